@@ -1,0 +1,36 @@
+# The two commands of the README are `make demo` and `make test`; the rest is for developers (CONTRIBUTING.md).
+BUILD := build/release
+JOBS ?= $(shell nproc)
+
+.PHONY: build demo test setup clean pictures asan tsan fuzz tidy format
+.DEFAULT_GOAL := build
+
+setup:            ## installs the Debian packages muslin builds on, if any is missing
+	@tools/setup
+
+$(BUILD)/build.ninja: CMakeLists.txt CMakePresets.json | setup
+	cmake --preset release $(if $(CI),-DMUSLIN_WERROR=ON)
+
+build: setup $(BUILD)/build.ninja   ## the program, at build/release/muslin
+	cmake --build $(BUILD) -j $(JOBS) --target muslin_program
+
+demo: build       ## runs the two-corner flag; movie and poster under out/
+	tools/demo $(BUILD)/muslin
+
+test: setup $(BUILD)/build.ninja    ## every test
+	cmake --build $(BUILD) -j $(JOBS)
+	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+
+asan tsan:        ## every test under a sanitizer
+	cmake --preset $@
+	cmake --build build/$@ -j $(JOBS)
+	ctest --test-dir build/$@ -j $(JOBS) --output-on-failure
+
+tidy:             ## clang-tidy over the sources
+	run-clang-tidy -quiet -p $(BUILD) 'src/muslin/.*|apps/.*'
+
+format:
+	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
+
+clean:
+	rm -rf build out

@@ -1,0 +1,3 @@
+#include "muslin/muslin.hpp"
+
+int main() { return 0; }

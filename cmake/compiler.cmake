@@ -1,0 +1,15 @@
+# Flags of all our own targets. -ffp-contract=off: the AVX2, AVX-512 and portable clones of a loop
+# must give the same bits; a fused multiply-add in one of them would not.
+add_library(muslin_flags INTERFACE)
+target_compile_options(muslin_flags INTERFACE -Wall -Wextra -Wpedantic -fno-math-errno -ffp-contract=off)
+if(MUSLIN_WERROR)
+  target_compile_options(muslin_flags INTERFACE -Werror)
+endif()
+if(MUSLIN_SANITIZE)
+  target_compile_options(muslin_flags INTERFACE -fsanitize=${MUSLIN_SANITIZE} -fno-omit-frame-pointer -g)
+  target_link_options(muslin_flags INTERFACE -fsanitize=${MUSLIN_SANITIZE})
+endif()
+if(NOT CMAKE_BUILD_TYPE AND PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O3")

@@ -1,0 +1,39 @@
+// Vertices held in place or moved along keyframes, and let go again.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// A rigid motion given by keyframes: linear in translation, spherical-linear in rotation between them,
+/// constant before the first and after the last. No keyframes: the identity.
+struct Motion {
+  struct Key {
+    double time = 0;                ///< [s]
+    Vec3 translate = Vec3::Zero();  ///< [m]
+    Eigen::Quaterniond rotate = Eigen::Quaterniond::Identity();
+  };
+  std::vector<Key> keys;      ///< times ascend strictly
+  Vec3 pivot = Vec3::Zero();  ///< rotations turn about this point [m]
+
+  Eigen::Isometry3d at(double time) const;
+};
+
+/// Holds `vertices` from `from` until `until`: vertex v stands at motion(t)·motion(from)⁻¹ applied to where
+/// it was when the pin took hold.
+struct Pin {
+  std::string name;
+  std::vector<int> vertices;                               ///< global vertex indices, ascending
+  double from = 0;                                         ///< [s]
+  double until = std::numeric_limits<double>::infinity();  ///< [s]
+  Motion motion;
+
+  bool active(double time) const { return time >= from && time < until; }
+};
+
+}  // namespace muslin

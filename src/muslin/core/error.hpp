@@ -1,0 +1,44 @@
+// What goes wrong because of input, files or numbers, told so that the reader can mend it.
+// Bugs of our own are asserts, not Errors.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace muslin {
+
+/// The value is the exit code of the program.
+enum class ErrorKind {
+  usage = 2,          ///< the command line or an API call is wrong
+  input = 3,          ///< a scene or mesh is wrong
+  solver = 4,         ///< the solver could not go on
+  file = 5,           ///< a file cannot be read or written (missing, permissions, disk full)
+  interrupted = 130,  ///< stopped by the user; the run can be resumed
+};
+
+/// Where in a file; line and column count from 1, 0 means unknown.
+struct Place {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// what() reads `FILE:LINE:COLUMN: problem; remedy`, leaving out what is unknown.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorKind kind, Place place, std::string problem, std::string remedy);
+  Error(ErrorKind kind, std::string problem, std::string remedy);
+
+  ErrorKind kind() const { return kind_; }
+  const Place& place() const { return place_; }
+  const std::string& problem() const { return problem_; }
+  const std::string& remedy() const { return remedy_; }
+
+ private:
+  ErrorKind kind_;
+  Place place_;
+  std::string problem_;
+  std::string remedy_;
+};
+
+}  // namespace muslin

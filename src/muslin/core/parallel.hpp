@@ -1,0 +1,41 @@
+// Parallel loops that give the same bits for any thread count: work is cut into blocks whose size depends
+// on the problem alone, and partial sums are added in the order of the blocks.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+namespace muslin {
+
+/// Limits all parallel work of the process to `count` threads; 0 means one per core.
+void set_thread_count(int count);
+int thread_count();
+
+/// Calls body(begin, end) for consecutive blocks of at most `grain` indices that cover [0, count).
+template <class Body>
+void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
+  if (count <= grain) {
+    if (count > 0) body(std::size_t{0}, count);
+    return;
+  }
+  const std::size_t blocks = (count + grain - 1) / grain;
+  tbb::parallel_for(std::size_t{0}, blocks,
+                    [&](std::size_t block) { body(block * grain, std::min(count, (block + 1) * grain)); });
+}
+
+/// The sum of body(begin, end) over the blocks of parallel_for, added in order.
+template <class Value, class Body>
+Value parallel_sum(std::size_t count, std::size_t grain, Value zero, const Body& body) {
+  if (count <= grain) return count > 0 ? Value(zero + body(std::size_t{0}, count)) : zero;
+  std::vector<Value> partial((count + grain - 1) / grain, zero);
+  parallel_for(count, grain,
+               [&](std::size_t begin, std::size_t end) { partial[begin / grain] = body(begin, end); });
+  Value sum = zero;
+  for (const Value& value : partial) sum = sum + value;
+  return sum;
+}
+
+}  // namespace muslin

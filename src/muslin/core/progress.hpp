@@ -1,0 +1,19 @@
+// How long work tells how far it is and learns that it should stop.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+namespace muslin {
+
+/// Both callbacks may be empty. Long work calls `report` with the finished fraction (0…1) and what it is
+/// doing, and polls `cancelled`; when that returns true it throws Error(ErrorKind::interrupted).
+struct Progress {
+  std::function<void(double fraction, std::string_view stage)> report;
+  std::function<bool()> cancelled;
+
+  /// Reports, then throws if cancelled.
+  void at(double fraction, std::string_view stage) const;
+};
+
+}  // namespace muslin

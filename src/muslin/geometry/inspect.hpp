@@ -1,0 +1,32 @@
+// What is wrong with a mesh, and what kind of mesh it is, before anything is built from it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "muslin/geometry/mesh.hpp"
+
+namespace muslin {
+
+struct MeshReport {
+  std::size_t vertices = 0, faces = 0, triangles = 0, components = 0;
+  std::size_t open_edges = 0;          ///< used by one face
+  std::size_t non_manifold_edges = 0;  ///< used by three or more
+  std::size_t flipped_edges = 0;       ///< used twice in the same direction
+  std::size_t degenerate_faces = 0;    ///< zero area
+  std::size_t duplicate_faces = 0, unused_vertices = 0;
+  double area = 0;    ///< [m²]
+  double volume = 0;  ///< enclosed, signed [m³]; meaningful if closed
+  Box bounds;
+  bool closed = false;
+  int flat_axis = -1;  ///< 0, 1, 2 if the mesh lies in a plane x, y or z = const; −1 otherwise
+  std::vector<std::string> warnings;  ///< sentences for the user, each with what to do
+};
+MeshReport inspect(const Mesh& mesh);
+
+/// Throws Error(input) naming `file` if the mesh cannot be used at all: no vertices, no faces, a position
+/// that is not finite or beyond 1e9 m, an index out of range, no area.
+void require_usable(const Mesh& mesh, const std::string& file);
+
+}  // namespace muslin

@@ -1,0 +1,48 @@
+// A polygon mesh as the artist made it: vertex order, polygons, texture seams and groups are kept, because
+// the skin that comes out of a simulation must fit the file that went in.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// A named set of faces or of vertices, as in OBJ `g` statements. Indices ascend, each once.
+struct MeshGroup {
+  std::string name;
+  std::vector<int> faces;     ///< indices of faces
+  std::vector<int> vertices;  ///< indices of the vertices of those faces, or a vertex group of its own
+};
+
+struct Mesh {
+  std::string name;                ///< object name, may be empty
+  std::vector<Vec3> positions;     ///< #V by 3
+  std::vector<int> face_offsets;   ///< #F + 1; face f has corners face_offsets[f] … face_offsets[f+1]−1
+  std::vector<int> face_vertices;  ///< #C vertex of each corner
+  std::vector<Vec2> uvs;           ///< #T texture coordinates; a vertex on a seam has several
+  std::vector<int> corner_uvs;     ///< #C index into uvs, −1 where a corner has none; empty if none has
+  std::vector<MeshGroup> groups;
+
+  std::size_t vertex_count() const { return positions.size(); }
+  std::size_t face_count() const { return face_offsets.empty() ? 0 : face_offsets.size() - 1; }
+  std::span<const int> face(std::size_t f) const {
+    return {face_vertices.data() + face_offsets[f],
+            static_cast<std::size_t>(face_offsets[f + 1] - face_offsets[f])};
+  }
+  /// Appends a polygon of at least three corners.
+  void add_face(std::span<const int> vertices);
+  Box bounds() const;
+};
+
+/// The polygons cut into triangles, in face order. Concave polygons are cut inside their outline.
+struct Triangulation {
+  std::vector<Vec3i> triangles;  ///< #T vertex indices
+  std::vector<int> faces;        ///< #T the polygon each triangle comes from
+};
+Triangulation triangulate(const Mesh& mesh);
+
+}  // namespace muslin

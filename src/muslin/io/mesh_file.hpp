@@ -1,0 +1,26 @@
+// Mesh files in and out.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "muslin/geometry/mesh.hpp"
+
+namespace muslin {
+
+/// Reads .obj, .ply, .stl, .gltf, .glb, .dae, .fbx; the content must fit the suffix. Positions in double,
+/// polygons, vertex order, texture seams and groups as in the file. Formats that store corners apart (STL,
+/// glTF, FBX, Collada) are welded by position, and `note` says so.
+/// Errors: file, if it cannot be read; input, with file and line where there is one, if it is malformed.
+struct MeshFile {
+  Mesh mesh;
+  std::string note;  ///< what the reader had to change, empty if nothing
+};
+MeshFile read_mesh(const std::filesystem::path& path);
+
+/// Writes .obj or .ply by suffix: same polygons, vertex order, texture coordinates (.obj), groups (.obj).
+/// Written to a temporary file and renamed, so that a full disk leaves no broken file. Errors: file.
+void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
+void write_mesh(const std::filesystem::path& path, const Mesh& mesh, ConstVectors positions);
+
+}  // namespace muslin

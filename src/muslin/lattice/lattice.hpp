@@ -1,0 +1,57 @@
+// The voxels of a solid and what is made of them: vertices, springs by direction, tetrahedra.
+//
+// Integer coordinates (i,j,k) count voxels from `origin` along x, y, z; voxel (i,j,k) spans
+// origin + width·[i,i+1]×[j,j+1]×[k,k+1]. Voxels and vertices are sorted by (j,k,i): x runs fastest, then z,
+// then y, so that a row of neighbours along x is contiguous in memory.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "muslin/core/progress.hpp"
+#include "muslin/core/vectors.hpp"
+#include "muslin/field/signed_distance.hpp"
+#include "muslin/geometry/mesh.hpp"
+
+namespace muslin {
+
+enum class VoxelRule {
+  cover,      ///< every voxel whose interior meets the solid: the union contains the mesh, none is wasted
+  threshold,  ///< voxels with distance(centre) < threshold·width; ties within 1e-6·width are out
+};
+
+struct LatticeSettings {
+  double width = 0;  ///< voxel width [m], > 0
+  VoxelRule rule = VoxelRule::cover;
+  double threshold = 0.5;  ///< in voxel widths; only for VoxelRule::threshold
+};
+
+struct Lattice {
+  Vec3 origin = Vec3::Zero();    ///< corner of voxel (0,0,0) [m]
+  double width = 1;              ///< [m]
+  Vec3i extent = Vec3i::Zero();  ///< voxels of the bounding grid along x, y, z
+
+  std::vector<Vec3i> voxels;                       ///< #C kept voxels
+  std::vector<double> fill;                        ///< #C share of the voxel that the solid fills, (0, 1]
+  std::vector<std::array<int, 8>> voxel_vertices;  ///< #C corner c at offset (c&1, c>>1&1, c>>2&1) in x, y, z
+  std::vector<Vec3i> vertices;                     ///< #V integer coordinates
+
+  double coverage = 1;  ///< share of the mesh's area that lies inside kept voxels
+
+  std::size_t voxel_count() const { return voxels.size(); }
+  std::size_t vertex_count() const { return vertices.size(); }
+  Vec3 rest_position(std::size_t v) const { return origin + width * vertices[v].cast<double>(); }
+  /// Index of the voxel at these coordinates, −1 if it is not kept.
+  int find_voxel(const Vec3i& coordinates) const;
+  int find_vertex(const Vec3i& coordinates) const;
+};
+
+/// Builds the lattice of the solid that `mesh` encloses. The grid is centred on the mesh's bounding box,
+/// with at least one voxel along every axis. Memory grows with the kept voxels.
+/// Errors: input, if no voxel is kept or more than 2³⁰ would be.
+Lattice build_lattice(const Mesh& mesh, const SignedDistance& distance, const LatticeSettings& settings,
+                      const Progress& progress = {});
+
+}  // namespace muslin

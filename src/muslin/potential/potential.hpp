@@ -1,0 +1,52 @@
+// Everything that pushes or pulls is a potential: the solver knows nothing else. One implicit step from
+// x_n minimises the incremental potential
+//
+//   E(x) = ½ (x − x̃)ᵀ M (x − x̃) + dt² Σᵢ Wᵢ(x),
+//
+// with x̃ the inertial prediction (Kane, Marsden, Ortiz, West 2000; Martin et al. 2011).
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/potential/state.hpp"
+
+namespace muslin {
+
+/// W(x) in joule for positions x (#V by 3, m). Implementations are immutable, safe to call from several
+/// threads, deterministic for any thread count, and parallel inside where that pays.
+class Potential {
+ public:
+  virtual ~Potential() = default;
+
+  virtual double value(ConstVectors x) const = 0;
+
+  /// g += ∂W/∂x, #V by 3, N.
+  virtual void add_gradient(ConstVectors x, Vectors g) const = 0;
+
+  /// y += ∂²W/∂x² p, the true (possibly indefinite) Hessian at x.
+  virtual void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const = 0;
+
+  /// blocks[v] += the diagonal 3×3 block of a positive semidefinite approximation of the Hessian: what the
+  /// preconditioner is built from, N/m.
+  virtual void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const = 0;
+
+  /// The largest t such that moving from x by t·d stays where W is finite and safe (1 means: all the way
+  /// and beyond is safe too).
+  virtual double max_step(ConstVectors x, ConstVectors d) const {
+    (void)x, (void)d;
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
+/// A load that depends on time, velocity or history (gravity, wind, damping): at the start of a step it
+/// yields the potential which that step minimises. Null means: nothing acts during this step.
+class Load {
+ public:
+  virtual ~Load() = default;
+  virtual std::unique_ptr<Potential> potential(const StepContext& step) const = 0;
+};
+
+}  // namespace muslin

@@ -1,0 +1,35 @@
+// What changes during a run, and what a step knows before it is solved.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// The whole moving state of all bodies, shape #V by 3 each. Saved and restored bit for bit.
+struct State {
+  std::vector<Vec3> positions;            ///< [m]
+  std::vector<Vec3> velocities;           ///< [m/s]
+  std::vector<Vec3> previous_positions;   ///< one step earlier [m]; empty before the first step
+  std::vector<Vec3> previous_velocities;  ///< one step earlier [m/s]; empty before the first step
+  double previous_dt = 0;                 ///< length of the step that led here [s], 0 before the first
+  double time = 0;                        ///< [s]
+  std::int64_t step = 0;
+};
+
+/// A step from time_begin to time_end. Integrators differ only in `anchor` and `dt`: velocities at the end
+/// of the step are (x − anchor) / dt. For implicit Euler the anchor is the position at the beginning and dt
+/// the length of the step; for BDF2 the anchor is a combination of the two last positions and dt two thirds
+/// of the step (equal steps).
+struct StepContext {
+  double time_begin = 0;     ///< [s]
+  double time_end = 0;       ///< [s]
+  double dt = 0;             ///< effective step of the integrator [s]
+  std::vector<Vec3> anchor;  ///< #V by 3 [m]
+  ConstVectors positions;    ///< #V by 3, at time_begin [m]
+  ConstVectors velocities;   ///< #V by 3, at time_begin [m/s]
+};
+
+}  // namespace muslin

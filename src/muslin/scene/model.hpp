@@ -1,0 +1,91 @@
+// All that does not change during a run: bodies with their lattices, masses, potentials, loads, pins,
+// probes. Made once from a Scene; shared read-only by the simulation and its writers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "muslin/constraint/pin.hpp"
+#include "muslin/core/progress.hpp"
+#include "muslin/geometry/mesh.hpp"
+#include "muslin/lattice/embedding.hpp"
+#include "muslin/lattice/lattice.hpp"
+#include "muslin/lattice/springs.hpp"
+#include "muslin/potential/potential.hpp"
+#include "muslin/scene/scene.hpp"
+#include "muslin/surface/contour.hpp"
+
+namespace muslin {
+
+struct BodyStatistics {
+  std::int64_t vertices = 0, voxels = 0, tetrahedra = 0;
+  std::array<std::int64_t, 3> springs{};  ///< by SpringKind: edge, face diagonal, body diagonal
+  double mass = 0;                        ///< [kg]
+  double coverage = 1;                    ///< share of the mesh's area inside kept voxels
+  double contour_distance = 0;            ///< largest distance of the rest contour from the solid [m]
+};
+
+struct Body {
+  std::string name;
+  Mesh mesh;   ///< the user's mesh, placed in the world; the skin's polygons, UVs and rest positions
+  Mesh solid;  ///< closed: the mesh itself, or the sheet with its thickness
+  Lattice lattice;
+  Springs springs;
+  Embedding skin;  ///< of mesh.positions
+  Contour contour;
+  int first_vertex =
+      0;  ///< the body's vertices are first_vertex … first_vertex + vertex_count − 1 of the state
+  int vertex_count = 0;
+  BodyStatistics statistics;
+};
+
+/// How a potential enters the energy balance.
+enum class EnergyRole {
+  elastic,      ///< stored in the material
+  potential,    ///< stored in a fixed field (gravity)
+  work,         ///< done on the bodies from outside (point forces, wind)
+  dissipation,  ///< lost (damping)
+};
+
+struct PotentialTerm {
+  std::string name;
+  EnergyRole role = EnergyRole::elastic;
+  std::shared_ptr<const Potential> potential;  ///< over all vertices of the model
+};
+struct LoadTerm {
+  std::string name;
+  EnergyRole role = EnergyRole::work;
+  std::shared_ptr<const Load> load;  ///< over all vertices of the model
+};
+
+struct Probe {
+  std::string name;
+  int body = 0;
+  Embedding point;  ///< one point, indices local to the body
+};
+
+struct Model {
+  Scene scene;
+  std::vector<Body> bodies;
+  std::vector<Vec3> rest_positions;  ///< #V by 3, all bodies one after the other [m]
+  std::vector<double> masses;        ///< #V [kg]
+  std::vector<PotentialTerm> potentials;
+  std::vector<LoadTerm> loads;
+  std::vector<Pin> pins;
+  std::vector<Probe> probes;
+  std::vector<std::string> warnings;  ///< what the user should know before a run
+
+  std::size_t vertex_count() const { return rest_positions.size(); }
+  ConstVectors of(const Body& body, ConstVectors all) const {
+    return all.subspan(static_cast<std::size_t>(body.first_vertex),
+                       static_cast<std::size_t>(body.vertex_count));
+  }
+};
+
+/// Reads the meshes and builds everything. Errors: input or file, with the place in the scene.
+Model build_model(const Scene& scene, const Progress& progress = {});
+
+}  // namespace muslin

@@ -1,0 +1,128 @@
+// The scene as the user wrote it, checked and with defaults filled in. Every quantity has its place in the
+// file, so that later errors can point at it.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "muslin/constraint/pin.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/core/vectors.hpp"
+#include "muslin/lattice/lattice.hpp"
+#include "muslin/lattice/springs.hpp"
+#include "muslin/material/material.hpp"
+#include "muslin/solver/solver.hpp"
+
+namespace muslin {
+
+struct TimeSettings {
+  double duration = 2;     ///< [s]
+  double frame_rate = 24;  ///< [1/s]
+  int steps_per_frame = 10;
+
+  int frames() const;  ///< last frame number; frame 0 is the start
+  double step() const { return 1.0 / (frame_rate * steps_per_frame); }  ///< [s]
+};
+
+/// Where in a body: the vertices that satisfy every criterion given.
+struct Selection {
+  struct BoxShape {
+    Vec3 min, max;
+  };
+  struct SphereShape {
+    Vec3 center;
+    double radius;
+  };
+  struct PlaneShape {
+    Vec3 point, normal;
+    double distance;
+  };  ///< |(x − point)·normal| ≤ distance
+  struct LineShape {
+    Vec3 a, b;
+    double distance;
+  };                                 ///< within distance of the segment
+  std::optional<std::string> group;  ///< a group of the body's mesh
+  std::optional<BoxShape> box;
+  std::optional<SphereShape> sphere;
+  std::optional<PlaneShape> plane;
+  std::optional<LineShape> line;
+  std::vector<Vec3> nearest;  ///< the vertex nearest to each point
+  Place place;
+};
+
+struct BodySettings {
+  std::string name;
+  std::string mesh;                 ///< path as written; relative to the scene file
+  std::optional<double> thickness;  ///< of an open mesh [m]; default: one voxel width
+  LatticeSettings lattice;
+  Bracing bracing = Bracing::kuhn;
+  enum class Mass { solid, cells } mass = Mass::solid;
+  enum class BoundarySprings { full, shared } boundary_springs = BoundarySprings::full;
+  Material material;
+  Vec3 translate = Vec3::Zero();  ///< [m]
+  Vec3 rotate = Vec3::Zero();     ///< Euler angles about x, then y, then z [degrees]
+  Vec3 scale = Vec3::Ones();
+  Vec3 velocity = Vec3::Zero();  ///< initial [m/s]
+  Place place;
+};
+
+struct PinSettings {
+  std::string name, body;
+  Selection where;
+  double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
+  Motion motion;
+  Place place;
+};
+
+/// A quantity over time: constant, or keyframed and linear between the keys.
+struct Keyed {
+  struct Key {
+    double time;
+    Vec3 value;
+  };
+  std::vector<Key> keys;  ///< at least one, times ascend strictly
+  Vec3 at(double time) const;
+};
+
+struct ForceSettings {
+  enum class Type { gravity, point, wind } type = Type::gravity;
+  std::string name;
+  std::string body;  ///< empty: every body
+  Selection where;   ///< point forces
+  Keyed value;  ///< gravity: acceleration [m/s²]; point: force on each selected vertex [N]; wind: velocity
+                ///< [m/s]
+  double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
+  double air_density = 1.2;                                          ///< wind [kg/m³]
+  double drag = 1.17;                                                ///< wind, drag coefficient C_D
+  double lift = 0.0;                                                 ///< wind, lift coefficient C_L
+  Place place;
+};
+
+struct ProbeSettings {
+  std::string name, body;
+  Vec3 at = Vec3::Zero();  ///< rest position [m]
+  Place place;
+};
+
+struct Scene {
+  std::string title;
+  std::filesystem::path file;  ///< where it was read from
+  std::string text;            ///< the file as it was read
+  std::string resolved;        ///< JSON: every setting with its value, defaults included
+  TimeSettings time;
+  SolverSettings solver;
+  std::vector<BodySettings> bodies;
+  std::vector<PinSettings> pins;
+  std::vector<ForceSettings> forces;
+  std::vector<ProbeSettings> probes;
+};
+
+/// Reads and checks a scene file; `overrides` are KEY=VALUE as given to --set, e.g. "time.duration=2",
+/// "body.flag.voxel_width=0.5", "body.0.voxel_width=0.5". Unknown keys are errors that name the nearest
+/// known key. Errors: file; input with file, line, column.
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+}  // namespace muslin

@@ -1,0 +1,57 @@
+// The façade of a run: a model and its state, advanced frame by frame.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "muslin/core/progress.hpp"
+#include "muslin/potential/state.hpp"
+#include "muslin/scene/model.hpp"
+#include "muslin/solver/solver.hpp"
+
+namespace muslin {
+
+/// One row of diagnostics.csv. Energies in joule, momentum in kg·m/s, over all bodies. The balance
+/// kinetic + elastic + potential − work + dissipated stays what it was at frame 0, up to the solver's
+/// residual.
+struct Diagnostics {
+  int frame = 0;
+  double time = 0;
+  double kinetic = 0, elastic = 0, potential = 0;
+  double work = 0;        ///< done from outside since the start (forces, wind, moving pins)
+  double dissipated = 0;  ///< lost since the start: damping and the integrator's own
+  Vec3 momentum = Vec3::Zero();
+  int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
+  double residual = 0;                               ///< largest of this frame [m/s²]
+  double max_stretch = 1;                            ///< largest length / rest length of a spring
+  double min_distance = 0;  ///< smallest gap between surfaces in contact [m]; infinity without contact
+  double wall_ms = 0;       ///< time this frame took
+};
+
+class Simulation {
+ public:
+  explicit Simulation(std::shared_ptr<const Model> model);
+  ~Simulation();
+
+  const Model& model() const;
+  const State& state() const;
+  int frame() const;
+  const Diagnostics& diagnostics() const;  ///< of the current frame
+
+  /// Advances one frame. A step that fails is halved, up to 8 times; if that fails too, throws
+  /// Error(solver) with frame, time, place and what to change, and the state is that of the last good step.
+  void advance(const Progress& progress = {});
+
+  /// The complete state as bytes, and back: a run continued from it gives the same bits as one that never
+  /// stopped. restore throws Error(input) if the bytes are damaged or of another model.
+  std::vector<std::uint8_t> checkpoint() const;
+  void restore(const std::vector<std::uint8_t>& bytes);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace muslin

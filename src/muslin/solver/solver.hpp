@@ -1,0 +1,55 @@
+// Time stepping: one step of an integrator over masses, potentials and held vertices.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/potential/potential.hpp"
+#include "muslin/potential/state.hpp"
+
+namespace muslin {
+
+enum class Integrator {
+  implicit_euler,           ///< first order, unconditionally stable, damps
+  bdf2,                     ///< second order, unconditionally stable, damps little
+  linearly_implicit_euler,  ///< one Newton step on the exact tangent (Baraff and Witkin 1998)
+  symplectic_euler,         ///< explicit, first order, conserves; stable only for small steps
+};
+
+struct SolverSettings {
+  Integrator integrator = Integrator::implicit_euler;
+  /// Converged when no vertex is out of balance by more than this acceleration: max ‖∂E/∂xᵢ‖ / (mᵢ dt²) ≤
+  /// tolerance [m/s²].
+  double tolerance = 1e-2;
+  int max_iterations = 100;        ///< Newton iterations of a step
+  double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
+};
+
+/// One step's problem. `fixed[v]` is 1 where vertex v is held: it ends the step at targets[v].
+struct StepProblem {
+  std::span<const double> masses;            ///< #V [kg]
+  std::vector<const Potential*> potentials;  ///< all that act during this step
+  std::span<const std::uint8_t> fixed;       ///< #V
+  ConstVectors targets;                      ///< #V by 3 [m], read only where fixed
+};
+
+struct StepReport {
+  bool converged = false;
+  int newton_iterations = 0;
+  int linear_iterations = 0;
+  double residual = 0;    ///< in the unit of SolverSettings::tolerance
+  int worst_vertex = -1;  ///< where the residual is largest
+  std::string failure;    ///< why not converged, empty otherwise
+};
+
+/// What loads must know before the step of length dt from `state`.
+StepContext step_context(Integrator integrator, const State& state, double dt);
+
+/// Advances `state` by one step. If the report says not converged, `state` is unchanged; it never holds NaN.
+StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
+                      State& state);
+
+}  // namespace muslin
