@@ -11,6 +11,7 @@
 #include "muslin/constraint/pin.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
+#include "muslin/force/keyed.hpp"
 #include "muslin/lattice/lattice.hpp"
 #include "muslin/lattice/springs.hpp"
 #include "muslin/material/material.hpp"
@@ -75,16 +76,6 @@ struct PinSettings {
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Motion motion;
   Place place;
-};
-
-/// A quantity over time: constant, or keyframed and linear between the keys.
-struct Keyed {
-  struct Key {
-    double time;
-    Vec3 value;
-  };
-  std::vector<Key> keys;  ///< at least one, times ascend strictly
-  Vec3 at(double time) const;
 };
 
 struct ForceSettings {

@@ -1,0 +1,29 @@
+#include "muslin/force/keyed.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace muslin {
+
+Vec3 Keyed::at(double time) const {
+  assert(!keys.empty());
+  const auto next =
+      std::upper_bound(keys.begin(), keys.end(), time, [](double t, const Key& key) { return t < key.time; });
+  if (next == keys.begin()) return keys.front().value;
+  if (next == keys.end()) return keys.back().value;
+  const Key& a = *(next - 1);
+  const Key& b = *next;
+  return a.value + (time - a.time) / (b.time - a.time) * (b.value - a.value);
+}
+
+double Window::share(double begin, double end) const {
+  const double length = end - begin;
+  assert(length > 0);
+  const double share = (std::min(end, until) - std::max(begin, from)) / length;
+  if (share < 1e-6) return 0;
+  return share > 1 - 1e-6 ? 1 : share;
+}
+
+double Window::sample(double end) const { return std::min(end, until); }
+
+}  // namespace muslin
