@@ -33,16 +33,24 @@ struct Mesh {
     return {face_vertices.data() + face_offsets[f],
             static_cast<std::size_t>(face_offsets[f + 1] - face_offsets[f])};
   }
-  /// Appends a polygon of at least three corners.
+  /// Appends a polygon of at least three corners, without texture coordinates. Errors: usage.
   void add_face(std::span<const int> vertices);
+  /// The smallest box around all faces; around all positions if there are no faces.
   Box bounds() const;
 };
 
-/// The polygons cut into triangles, in face order. Concave polygons are cut inside their outline.
+/// The polygons cut into triangles, in face order, n − 2 from n corners, with the orientation of their
+/// polygon. Concave polygons are cut inside their outline, seen along their normal; vertices are neither
+/// added nor dropped, so a polygon without area gives triangles without area.
 struct Triangulation {
   std::vector<Vec3i> triangles;  ///< #T vertex indices
   std::vector<int> faces;        ///< #T the polygon each triangle comes from
 };
+/// Indices must be in range (require_usable).
 Triangulation triangulate(const Mesh& mesh);
+
+/// Twice the area of a polygon times its unit normal (Newell's sum): exact for plane polygons, the
+/// best-fitting plane for others. Not finite or zero if the polygon is degenerate.
+Vec3 newell_normal(ConstVectors positions, std::span<const int> face);
 
 }  // namespace muslin
