@@ -22,11 +22,13 @@ struct State {
 /// A step from time_begin to time_end. Integrators differ only in `anchor` and `dt`: velocities at the end
 /// of the step are (x − anchor) / dt. For implicit Euler the anchor is the position at the beginning and dt
 /// the length of the step; for BDF2 the anchor is a combination of the two last positions and dt two thirds
-/// of the step (equal steps).
+/// of the step (equal steps). Symplectic Euler reads forces at the beginning of the step; its anchor is such
+/// that (x − anchor) / dt is there the velocity at the beginning.
 struct StepContext {
   double time_begin = 0;     ///< [s]
   double time_end = 0;       ///< [s]
   double dt = 0;             ///< effective step of the integrator [s]
+  double velocity_time = 0;  ///< when (x − anchor) / dt is the velocity to second order [s]
   std::vector<Vec3> anchor;  ///< #V by 3 [m]
   ConstVectors positions;    ///< #V by 3, at time_begin [m]
   ConstVectors velocities;   ///< #V by 3, at time_begin [m/s]

@@ -1,0 +1,75 @@
+// The springs of one lattice body.
+//
+//   W(x) = Σ ½ k (|z| − r)²,  z = x_b − x_a,
+//
+// r the rest length and k = modulus × voxel width × weight of the spring [N/m]. With n = z/|z|:
+//
+//   ∂W/∂x_b = k (|z| − r) n = −∂W/∂x_a
+//   ∂²W/∂z² = k (n nᵀ + (1 − r/|z|)(I − n nᵀ)),
+//
+// indefinite under compression. A spring shorter than 1e-12 r has no direction: it stores its energy but
+// pulls nowhere, and k I stands for its Hessian.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "muslin/energy/spring_slabs.hpp"
+#include "muslin/lattice/springs.hpp"
+#include "muslin/potential/potential.hpp"
+
+namespace muslin {
+
+class SpringEnergy : public Potential {
+ public:
+  /// `width` is the voxel width [m]; `moduli` by SpringKind [N/m²], ≥ 0; `weights` (#springs, or empty for
+  /// all 1) scales single springs, as a boundary or a partly filled voxel asks for.
+  SpringEnergy(const Springs& springs, double width, const std::array<double, 3>& moduli,
+               std::vector<float> weights = {});
+
+  double value(ConstVectors x) const override;
+  void add_gradient(ConstVectors x, Vectors g) const override;
+  void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override;
+  void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override;
+
+  /// Largest |z| / r over all springs, 1 if there are none.
+  double max_stretch(ConstVectors x) const;
+
+  const SpringSlabs& slabs() const { return slabs_; }
+  double rest_length(int direction) const { return types_[static_cast<std::size_t>(direction)].rest; }
+  /// k of spring `index` (counted as in Springs) of this direction [N/m].
+  double stiffness(int direction, std::int64_t index) const {
+    const double k = types_[static_cast<std::size_t>(direction)].stiffness;
+    return weights_.empty() ? k : k * static_cast<double>(weights_[static_cast<std::size_t>(index)]);
+  }
+  std::int64_t count() const { return count_; }
+
+ private:
+  struct Type {
+    double rest = 0;       // [m]
+    double stiffness = 0;  // modulus × width [N/m]
+  };
+  std::vector<Type> types_;  // by direction
+  std::vector<float> weights_;
+  SpringSlabs slabs_;
+  std::int64_t count_ = 0;
+};
+
+/// Axial dashpots beside the springs, c = β k: the force on b is −c n nᵀ(v_b − v_a). n is the spring's
+/// direction predicted for the time the step's velocity belongs to (StepContext::velocity_time), so that
+/// falling freely is not damped at all, turning as a rigid body only by the prediction's error, and the
+/// dashpots are quadratic in x:  W = Σ β k (nᵀ(z − z_anchor))² / (2 dt).
+class SpringDamping : public Load {
+ public:
+  /// beta [s] ≥ 0: Rayleigh's stiffness-proportional damping.
+  SpringDamping(std::shared_ptr<const SpringEnergy> springs, double beta);
+  std::unique_ptr<Potential> potential(const StepContext& step) const override;
+
+ private:
+  std::shared_ptr<const SpringEnergy> springs_;
+  double beta_;
+};
+
+}  // namespace muslin
