@@ -20,10 +20,16 @@ struct MeshReport {
   double volume = 0;  ///< enclosed, signed [m³]; meaningful if closed
   Box bounds;
   bool closed = false;
-  int flat_axis = -1;  ///< 0, 1, 2 if the mesh lies in a plane x, y or z = const; −1 otherwise
+  int flat_axis =
+      -1;  ///< 0, 1, 2 if the faces lie in a plane x, y or z = const (to 1e-9 of the size), else −1
   std::vector<std::string> warnings;  ///< sentences for the user, each with what to do
 };
+/// For any mesh; if an index or a position is bad, only the counts of vertices and faces and that warning are
+/// filled in. Components are joined by shared vertices.
 MeshReport inspect(const Mesh& mesh);
+
+/// Positions beyond this are refused: nothing made of cloth is that far away, so the file is broken. [m]
+inline constexpr double largest_coordinate = 1e9;
 
 /// Throws Error(input) naming `file` if the mesh cannot be used at all: no vertices, no faces, a position
 /// that is not finite or beyond 1e9 m, an index out of range, no area.
