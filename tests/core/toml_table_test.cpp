@@ -53,6 +53,10 @@ TEST(TomlValue, NamesThePlaceOfASyntaxError) {
   EXPECT_THAT(message([] { parse_toml("a = 1\nb = = 2\n", "f.toml"); }), HasSubstr("f.toml:2:"));
 }
 
+TEST(TomlValue, NumbersTooLargeForADoubleAreRefused) {
+  EXPECT_THAT(message([] { parse_toml("f = 1e400\n", "f.toml"); }), HasSubstr("f.toml:1:"));
+}
+
 TEST(TomlValue, RefusesKeysAndNestingThatOverflowTheStack) {
   std::string key = "a";
   for (int i = 0; i < 200'000; ++i) key += ".a";
@@ -79,14 +83,13 @@ TEST(TomlTable, UnknownKeysNameTheNearestKnownKeyAtTheirPlace) {
 }
 
 TEST(TomlTable, NumbersAreCheckedForTypeRangeAndFiniteness) {
-  const TomlValue root = parse_toml("a = -2\nb = 'x'\nc = nan\nd = inf\ne = 3\nf = 1e400\n", "f.toml");
+  const TomlValue root = parse_toml("a = -2\nb = 'x'\nc = nan\nd = inf\ne = 3\n", "f.toml");
   const TomlTable table(root, "[time]", root.keys);
   EXPECT_EQ(message([&] { table.number("a", "s", Range::positive()); }),
             "f.toml:1:5: `a` of [time] is -2; give a number greater than 0 [s]");
   EXPECT_THAT(message([&] { table.number("b", "s", Range::any()); }), HasSubstr("is \"x\"; give a number"));
   EXPECT_THAT(message([&] { table.number("c", "s", Range::any()); }), HasSubstr("is nan"));
   EXPECT_THAT(message([&] { table.number("d", "s", Range::positive()); }), HasSubstr("is inf"));
-  EXPECT_THAT(message([&] { table.number("f", "s", Range::positive()); }), HasSubstr("is inf"));
   EXPECT_EQ(table.number("e", "s", Range::positive()), 3);
   EXPECT_EQ(table.number("missing", "s", Range::positive(), 7), 7);
   EXPECT_THAT(message([&] { table.number("missing", "s", Range::positive()); }),

@@ -200,6 +200,8 @@ struct Wrong {
   std::string text;
   std::string expected;
 };
+void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.text; }
+
 class WrongScene : public testing::TestWithParam<Wrong> {};
 
 TEST_P(WrongScene, IsAnErrorThatSaysWhatToDo) {
@@ -227,8 +229,6 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[[body]]\nmesh = 'a.obj'\nvoxel_width = 0\nmaterial = 'thesis_flag'\n", "`voxel_width`"},
         Wrong{"[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nmaterial = 'thesis_falg'\n",
               "scene.toml:4:12: there is no material `thesis_falg`; did you mean `thesis_flag`?"},
-        Wrong{"[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nmaterial = 'mine.toml'\n",
-              "scene.toml:4:12: folder/mine.toml: no such file"},
         Wrong{"[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nmaterial = { density = 1 }\n",
               "has no `edge_modulus`"},
         Wrong{"[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nmaterial = { densty = 1 }\n",
@@ -349,6 +349,12 @@ TEST(Scene, AMaterialFileStandsBesideTheScene) {
     EXPECT_THAT(error.what(), HasSubstr("mine.toml:2:1: unknown key `densty`"));
   }
   std::filesystem::remove_all(folder);
+}
+
+TEST(Scene, AMissingMaterialFileIsAFileErrorAtItsPlaceInTheScene) {
+  EXPECT_THAT(
+      message("[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nmaterial = 'mine.toml'\n", {}, ErrorKind::file),
+      HasSubstr("scene.toml:4:12: folder/mine.toml: no such file"));
 }
 
 TEST(Scene, AMissingSceneIsAFileError) {
