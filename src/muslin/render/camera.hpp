@@ -1,0 +1,49 @@
+// The camera, and how far it must stand to see everything.
+#pragma once
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+struct CameraOptions {
+  double azimuth = 30;         ///< [deg] from the z axis towards the x axis
+  double elevation = 15;       ///< [deg] above the horizon, −89…89
+  double field_of_view = 32;   ///< [deg] of the picture's height, 5…120
+  double distance_factor = 1;  ///< on the distance at which everything just fits
+};
+
+struct Camera {
+  Vec3 position = Vec3(0, 0, 1);
+  Vec3 right = Vec3::UnitX();  ///< unit vectors of the picture
+  Vec3 up = Vec3::UnitY();
+  Vec3 forward = -Vec3::UnitZ();
+  double half_height = 0.3;    ///< tangent of half the field of view
+  double half_width = 0.4;     ///< half_height × aspect
+  Vec3 target = Vec3::Zero();  ///< middle of what is to be seen
+  double radius = 1;           ///< [m] of a ball around target that holds it
+
+  /// Pixels (x right, y down) at which a point appears in a picture of this size; the point must lie in
+  /// front.
+  Vec2 project(const Vec3& point, int width, int height) const;
+};
+
+/// Finds the one camera that sees the points of all frames, so that it need not move. The nearest position
+/// for the given direction is exact: each of the four sides of the view touches a point. Two pairs of
+/// numbers are kept, not the points.
+class CameraFit {
+ public:
+  /// aspect = width / height. Throws Error(usage) on options outside their ranges.
+  CameraFit(const CameraOptions& options, double aspect);
+  /// Points that are not finite are passed over.
+  void add(ConstVectors points);
+  /// A camera with a margin of 6 % on each side. Without any point, the unit cube is framed.
+  Camera camera() const;
+
+ private:
+  CameraOptions options_;
+  Camera view_;
+  Box box_;
+  double sides_[4];  // greatest of ±x − z·tan and ±y − z·tan over the points, z along forward
+};
+
+}  // namespace muslin

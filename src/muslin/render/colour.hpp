@@ -1,0 +1,47 @@
+// Colour: sRGB and linear light, the tone curve, and maps from a number to a colour.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// Linear light (radiance or reflectance), red, green, blue.
+using Light = Eigen::Vector3f;
+
+/// sRGB 0…1 to linear light and back (IEC 61966-2-1).
+Light linear_of_srgb(const Vec3& srgb);
+Vec3 srgb_of_linear(const Light& light);
+
+/// Linear up to 0.6, then a shoulder that reaches 1 only in the limit, so that highlights never clip and
+/// the colours below them stay what the user chose.
+Light tone_curve(const Light& radiance);
+/// The radiance that tone_curve takes to `shown` (each below 1).
+Light inverse_tone_curve(const Light& shown);
+
+std::array<std::uint8_t, 3> bytes_of_srgb(const Vec3& srgb);
+
+enum class ColourMap {
+  sequential,  ///< indigo, teal, green, yellow: lightness rises evenly
+  diverging,   ///< blue, light grey, red: lightness falls evenly to both sides of the middle
+};
+
+/// sRGB of t in 0…1 (clamped). Made of straight lines in OKLab (Ottosson 2020), where equal steps look equal.
+Vec3 map_colour(ColourMap map, double t);
+
+/// How per-vertex numbers are shown, and what the legend says.
+struct ColourScale {
+  double low = 0;
+  double high = 1;
+  std::string label;  ///< with the unit, such as "stretch [%]"
+  ColourMap map = ColourMap::sequential;
+
+  double fraction(double value) const { return high > low ? (value - low) / (high - low) : 0.5; }
+};
+
+}  // namespace muslin

@@ -1,0 +1,39 @@
+// Pictures of 8-bit sRGB colour and PNG files.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace muslin {
+
+/// Row by row from the top, three bytes (red, green, blue; sRGB) a pixel.
+struct Image {
+  Image() = default;
+  /// Filled with one colour. Throws Error(usage) unless both sides are 1…16384.
+  Image(int width, int height, std::array<std::uint8_t, 3> colour = {255, 255, 255});
+
+  std::uint8_t* pixel(int x, int y) { return pixels.data() + offset(x, y); }
+  const std::uint8_t* pixel(int x, int y) const { return pixels.data() + offset(x, y); }
+
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;  ///< height × width × 3
+
+ private:
+  std::size_t offset(int x, int y) const {
+    return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+  }
+};
+
+/// Replaces `path` whole or not at all: written beside it under another name, then renamed.
+/// Throws Error(file) if the disk is full or the place cannot be written.
+void write_png(const std::filesystem::path& path, const Image& image);
+
+/// As write_png, with the bytes given.
+void replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+
+}  // namespace muslin

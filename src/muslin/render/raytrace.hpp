@@ -1,0 +1,38 @@
+// A ray-traced preview on the CPU: soft sun, sky light with occlusion, cloth seen from both sides, contact
+// shadows on a ground that fades into the background. Same picture, bit for bit, for any thread count.
+#pragma once
+
+#include <memory>
+
+#include "muslin/core/progress.hpp"
+#include "muslin/render/camera.hpp"
+#include "muslin/render/image.hpp"
+#include "muslin/render/scene_view.hpp"
+
+namespace muslin {
+
+struct RenderOptions {
+  int width = 1280;  ///< [pixels]
+  int height = 720;  ///< [pixels]
+  int samples = 8;   ///< camera rays a pixel, each with one ray to the sun, 1…4096
+  int sky_rays = 8;  ///< rays to the sky per camera ray, 1…1024
+};
+
+class Raytracer {
+ public:
+  /// Throws Error(usage) on options out of range or a surface whose arrays do not fit.
+  Raytracer(SceneView scene, const Camera& camera, const RenderOptions& options);
+  ~Raytracer();
+  Raytracer(const Raytracer&) = delete;
+  Raytracer& operator=(const Raytracer&) = delete;
+
+  /// One frame, with label and legend. Throws Error(input) where a position or value is not finite.
+  /// Not for two threads at once: the frame's vertices are kept inside.
+  Image render(const FrameView& frame, const Progress& progress = {});
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace muslin
