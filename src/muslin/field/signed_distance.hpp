@@ -11,12 +11,20 @@
 
 namespace muslin {
 
+/// Where the surface is nearest.
+struct SurfacePoint {
+  double distance;  ///< [m]; infinity if farther than asked
+  int triangle;     ///< index into triangulate(mesh).triangles; −1 if farther than asked
+};
+
 /// Distance to the surface, negative inside. The magnitude is the exact distance to the nearest triangle
 /// (1e-6 relative or better); the sign is that of the generalised winding number, inside where it exceeds
 /// one half (Barill et al. 2018), so that holes and soup have an inside too.
 class SignedDistance {
  public:
-  /// `mesh` must have an area; the solid is what its faces enclose.
+  /// The solid is what the faces enclose, whichever way they are oriented (see orientation.hpp). Meant for
+  /// meshes that pass require_usable (inspect.hpp).
+  /// Errors: input, if there are no faces.
   explicit SignedDistance(const Mesh& mesh);
   ~SignedDistance();
   SignedDistance(SignedDistance&&) noexcept;
@@ -26,6 +34,11 @@ class SignedDistance {
   /// Unsigned distance to the surface.
   double distance(const Vec3& point) const;
   bool inside(const Vec3& point) const;
+  /// Unsigned distance, looking no farther than `max_distance`. A `hint`, the triangle nearest to a point
+  /// close by, makes it faster and changes nothing else.
+  SurfacePoint nearest(const Vec3& point, double max_distance, int hint = -1) const;
+  /// True if every edge is run as often one way as the other: then the sign changes at the surface only.
+  bool watertight() const;
   const Box& bounds() const;
 
  private:
@@ -60,6 +73,10 @@ struct DistanceField {
   std::vector<float> values;  ///< grid.size(), i fastest [m]
 };
 
+/// Samples the whole grid, in parallel; the same bits for any thread count. Where the mesh is watertight the
+/// sign is worked out only near the surface and spread from there: between two neighbours whose distances
+/// add up to more than the width it cannot change. `band` ≥ 0 [m], infinity for all samples.
+/// Errors: usage, if the grid or the band makes no sense; interrupted.
 DistanceField sample_field(const SignedDistance& distance, const Grid& grid, double band,
                            const Progress& progress = {});
 

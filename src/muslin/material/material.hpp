@@ -1,8 +1,10 @@
-// What a body is made of.
+// What a body is made of, and the library of materials that comes with muslin.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace muslin {
@@ -10,6 +12,7 @@ namespace muslin {
 /// Lattice material. A spring's constant is modulus × voxel width.
 struct Material {
   std::string name;
+  std::string description;
   std::string source;                ///< where the numbers are from
   double density = 0;                ///< [kg/m³]
   double edge_modulus = 0;           ///< [N/m²]
@@ -18,6 +21,19 @@ struct Material {
   double volume_modulus = 0;         ///< stiffness of tetrahedral volume conservation [N/m²], 0: off
   double mass_damping = 0;           ///< Rayleigh α [1/s]
   double stiffness_damping = 0;      ///< Rayleigh β [s]
+  /// Measured numbers of the real material that go with it, for the reader; the simulation uses none.
+  std::vector<std::pair<std::string, double>> reference;
 };
+
+/// The materials that come with muslin, in alphabetical order. They are compiled into the library.
+std::vector<std::string> material_names();
+
+/// The material of this name. Errors: input, naming the nearest one.
+Material find_material(const std::string& name);
+
+/// A material file: `name`, `description`, `source`, a table [lattice] with the quantities above and a table
+/// [reference] of free numbers. Errors: file; input with file, line and column.
+Material read_material(const std::filesystem::path& file);
+Material parse_material(std::string_view text, const std::string& file);
 
 }  // namespace muslin

@@ -48,6 +48,7 @@ class RestrictedLoad : public Load {
     StepContext body = step;
     const auto begin = step.anchor.begin() + static_cast<std::ptrdiff_t>(first_);
     body.anchor.assign(begin, begin + static_cast<std::ptrdiff_t>(count_));
+    body.inertial_prediction.clear();  // the solver's, not the loads'
     body.positions = step.positions.subspan(first_, count_);
     body.velocities = step.velocities.subspan(first_, count_);
     std::unique_ptr<Potential> local = local_->potential(body);

@@ -25,13 +25,15 @@ struct State {
 /// of the step (equal steps). Symplectic Euler reads forces at the beginning of the step; its anchor is such
 /// that (x − anchor) / dt is there the velocity at the beginning.
 struct StepContext {
-  double time_begin = 0;     ///< [s]
-  double time_end = 0;       ///< [s]
-  double dt = 0;             ///< effective step of the integrator [s]
-  double velocity_time = 0;  ///< when (x − anchor) / dt is the velocity to second order [s]
-  std::vector<Vec3> anchor;  ///< #V by 3 [m]
-  ConstVectors positions;    ///< #V by 3, at time_begin [m]
-  ConstVectors velocities;   ///< #V by 3, at time_begin [m/s]
+  double time_begin = 0;                  ///< [s]
+  double time_end = 0;                    ///< [s]
+  double dt = 0;                          ///< effective step of the integrator [s]
+  double velocity_time = 0;               ///< when (x − anchor) / dt is the velocity to second order [s]
+  double length = 0;                      ///< of the step, time_end − time_begin without its rounding [s]
+  std::vector<Vec3> anchor;               ///< #V by 3 [m]
+  std::vector<Vec3> inertial_prediction;  ///< #V by 3, where the vertices would end without forces [m]
+  ConstVectors positions;                 ///< #V by 3, at time_begin [m]
+  ConstVectors velocities;                ///< #V by 3, at time_begin [m/s]
 };
 
 }  // namespace muslin

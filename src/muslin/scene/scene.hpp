@@ -28,7 +28,8 @@ struct TimeSettings {
   double step() const { return 1.0 / (frame_rate * steps_per_frame); }  ///< [s]
 };
 
-/// Where in a body: the vertices that satisfy every criterion given.
+/// Where in a body: the lattice vertices that satisfy every criterion given. Coordinates are those of the
+/// world at rest, after the body has been placed.
 struct Selection {
   struct BoxShape {
     Vec3 min, max;
@@ -37,26 +38,30 @@ struct Selection {
     Vec3 center;
     double radius;
   };
+  /// |(x − point)·normal| ≤ distance
   struct PlaneShape {
-    Vec3 point, normal;
-    double distance;
-  };  ///< |(x − point)·normal| ≤ distance
+    Vec3 point, normal;              ///< the normal has length 1
+    std::optional<double> distance;  ///< [m]; default: half a voxel width, so that one layer is always met
+  };
+  /// Within distance of the segment.
   struct LineShape {
     Vec3 a, b;
-    double distance;
-  };                                 ///< within distance of the segment
-  std::optional<std::string> group;  ///< a group of the body's mesh
+    std::optional<double> distance;  ///< [m]; default: ¾ of a voxel width, so that a line in the middle of
+                                     ///< a sheet of one voxel meets both of its sides
+  };
+  std::optional<std::string> group;  ///< the vertices that carry this group of the body's mesh
   std::optional<BoxShape> box;
   std::optional<SphereShape> sphere;
   std::optional<PlaneShape> plane;
   std::optional<LineShape> line;
-  std::vector<Vec3> nearest;  ///< the vertex nearest to each point
+  std::vector<Vec3> nearest;  ///< the vertex nearest to each point, and all that are as near
   Place place;
 };
 
 struct BodySettings {
   std::string name;
-  std::string mesh;                 ///< path as written; relative to the scene file
+  std::string mesh;  ///< path as written; relative to the scene file
+  Place mesh_place;
   std::optional<double> thickness;  ///< of an open mesh [m]; default: one voxel width
   LatticeSettings lattice;
   Bracing bracing = Bracing::kuhn;
@@ -75,6 +80,7 @@ struct PinSettings {
   Selection where;
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Motion motion;
+  std::optional<Vec3> pivot;  ///< of the motion [m]; default: the centre of the held vertices at rest
   Place place;
 };
 
@@ -100,9 +106,10 @@ struct ProbeSettings {
 
 struct Scene {
   std::string title;
-  std::filesystem::path file;  ///< where it was read from
-  std::string text;            ///< the file as it was read
-  std::string resolved;        ///< JSON: every setting with its value, defaults included
+  std::filesystem::path file;         ///< where it was read from
+  std::string text;                   ///< the file as it was read
+  std::string resolved;               ///< JSON: every setting with its value, defaults included
+  std::vector<std::string> warnings;  ///< what is legal but probably not meant
   TimeSettings time;
   SolverSettings solver;
   std::vector<BodySettings> bodies;
@@ -111,9 +118,15 @@ struct Scene {
   std::vector<ProbeSettings> probes;
 };
 
+/// A path of the scene as written, made relative to the scene file's folder.
+std::filesystem::path resolve_path(const Scene& scene, const std::string& path);
+
 /// Reads and checks a scene file; `overrides` are KEY=VALUE as given to --set, e.g. "time.duration=2",
 /// "body.flag.voxel_width=0.5", "body.0.voxel_width=0.5". Unknown keys are errors that name the nearest
 /// known key. Errors: file; input with file, line, column.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+/// The same for a text; `file` is the name that messages carry and what paths are relative to.
+Scene parse_scene(const std::string& text, const std::filesystem::path& file,
+                  const std::vector<std::string>& overrides = {});
 
 }  // namespace muslin

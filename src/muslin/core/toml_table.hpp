@@ -1,0 +1,74 @@
+// Checked reading of a TOML table: every getter names the key, its place, what is wrong and the unit.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "muslin/core/toml_value.hpp"
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// What a number may be. Infinite and NaN never are allowed, whatever the bounds.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool open_min = false;  ///< min itself is not allowed
+
+  static Range any() { return {}; }
+  static Range positive() { return {0, std::numeric_limits<double>::infinity(), true}; }
+  static Range non_negative() { return {0, std::numeric_limits<double>::infinity(), false}; }
+  static Range between(double min, double max) { return {min, max, false}; }
+};
+
+/// Numbers of single values; `name` is how messages call them and `unit` may be empty. Errors: input.
+double to_number(const TomlValue& value, const std::string& name, std::string_view unit,
+                 const Range& range = {});
+Vec3 to_vector(const TomlValue& value, const std::string& name, std::string_view unit,
+               const Range& range = {});
+
+class TomlTable {
+ public:
+  /// `title` is how messages call the table, such as "[time]". Keys other than `known` are errors that name
+  /// the nearest known one. `value` must outlive the table. Errors: input.
+  TomlTable(const TomlValue& value, std::string title, const std::vector<std::string>& known);
+
+  bool has(std::string_view key) const { return find(key) != nullptr; }
+  const TomlValue* find(std::string_view key) const { return value_->find(key); }
+  /// Of the key's value; of the table if the key is missing.
+  const Place& place(std::string_view key) const;
+  const Place& place() const { return value_->place; }
+  const std::string& title() const { return title_; }
+  std::size_t size() const { return value_->items.size(); }
+
+  // With a fallback the key may be missing; without, that is an error.
+  double number(std::string_view key, std::string_view unit, const Range& range) const;
+  double number(std::string_view key, std::string_view unit, const Range& range, double fallback) const;
+  std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max, std::int64_t fallback) const;
+  Vec3 vector(std::string_view key, std::string_view unit) const;
+  Vec3 vector(std::string_view key, std::string_view unit, const Vec3& fallback) const;
+  std::string string(std::string_view key) const;
+  std::string string(std::string_view key, const std::string& fallback) const;
+  /// The index of the string among `names`.
+  std::size_t choice(std::string_view key, const std::vector<std::string>& names, std::size_t fallback) const;
+  /// A table below this one; nothing if the key is missing.
+  std::optional<TomlTable> table(std::string_view key, const std::vector<std::string>& known) const;
+  /// The items of an array; nothing if the key is missing.
+  const std::vector<TomlValue>* array(std::string_view key, std::string_view what) const;
+
+  /// An error about the key, at its place.
+  Error error(std::string_view key, std::string problem, std::string remedy) const;
+
+ private:
+  const TomlValue& require(std::string_view key, std::string_view what) const;
+  std::string name_of(std::string_view key) const;
+
+  const TomlValue* value_;
+  std::string title_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,23 @@
+// The words of the scene file for the choices of its settings, in the order of their enumerations.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace muslin {
+
+const std::vector<std::string>& integrator_names();       ///< Integrator
+const std::vector<std::string>& voxel_rule_names();       ///< VoxelRule
+const std::vector<std::string>& bracing_names();          ///< Bracing
+const std::vector<std::string>& mass_names();             ///< BodySettings::Mass
+const std::vector<std::string>& boundary_spring_names();  ///< BodySettings::BoundarySprings
+const std::vector<std::string>& force_type_names();       ///< ForceSettings::Type
+/// The key of the value of each ForceSettings::Type: acceleration, force, velocity.
+const std::vector<std::string>& force_value_names();
+
+template <class Enumeration>
+const std::string& name_of(const std::vector<std::string>& names, Enumeration value) {
+  return names[static_cast<std::size_t>(value)];
+}
+
+}  // namespace muslin

@@ -1,0 +1,132 @@
+#include "muslin/scene/resolved.hpp"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "muslin/scene/names.hpp"
+
+namespace muslin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json vector(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Json selection(const Selection& where) {
+  Json json = Json::object();
+  if (where.group) json["group"] = *where.group;
+  if (where.box) json["box"] = Json::array({vector(where.box->min), vector(where.box->max)});
+  if (where.sphere) {
+    json["sphere"] = {{"center", vector(where.sphere->center)}, {"radius", where.sphere->radius}};
+  }
+  if (where.plane) {
+    json["plane"] = {{"point", vector(where.plane->point)}, {"normal", vector(where.plane->normal)}};
+    if (where.plane->distance) json["plane"]["distance"] = *where.plane->distance;
+  }
+  if (where.line) {
+    json["line"] = {{"from", vector(where.line->a)}, {"to", vector(where.line->b)}};
+    if (where.line->distance) json["line"]["distance"] = *where.line->distance;
+  }
+  if (!where.nearest.empty()) {
+    json["nearest"] = Json::array();
+    for (const Vec3& point : where.nearest) json["nearest"].push_back(vector(point));
+  }
+  return json;
+}
+
+Json material(const Material& m) {
+  return {{"name", m.name},
+          {"density", m.density},
+          {"edge_modulus", m.edge_modulus},
+          {"face_diagonal_modulus", m.face_diagonal_modulus},
+          {"body_diagonal_modulus", m.body_diagonal_modulus},
+          {"volume_modulus", m.volume_modulus},
+          {"mass_damping", m.mass_damping},
+          {"stiffness_damping", m.stiffness_damping}};
+}
+
+Json body(const BodySettings& b) {
+  Json json = {{"name", b.name}, {"mesh", b.mesh}, {"model", "lattice"}};
+  json["thickness"] = b.thickness.value_or(b.lattice.width);
+  json["voxel_width"] = b.lattice.width;
+  json["voxels"] = name_of(voxel_rule_names(), b.lattice.rule);
+  if (b.lattice.rule == VoxelRule::threshold) json["threshold"] = b.lattice.threshold;
+  json["bracing"] = name_of(bracing_names(), b.bracing);
+  json["mass"] = name_of(mass_names(), b.mass);
+  json["boundary_springs"] = name_of(boundary_spring_names(), b.boundary_springs);
+  json["material"] = material(b.material);
+  json["translate"] = vector(b.translate);
+  json["rotate"] = vector(b.rotate);
+  json["scale"] = vector(b.scale);
+  json["velocity"] = vector(b.velocity);
+  return json;
+}
+
+Json pin(const PinSettings& p) {
+  Json json = {{"name", p.name}, {"body", p.body}, {"where", selection(p.where)}};
+  json["from"] = number(p.from);
+  json["until"] = number(p.until);
+  if (p.pivot) json["pivot"] = vector(*p.pivot);
+  json["keyframes"] = Json::array();
+  for (const Motion::Key& key : p.motion.keys) {
+    json["keyframes"].push_back(
+        {{"time", key.time},
+         {"translate", vector(key.translate)},
+         {"quaternion", {key.rotate.w(), key.rotate.x(), key.rotate.y(), key.rotate.z()}}});
+  }
+  return json;
+}
+
+Json force(const ForceSettings& f) {
+  Json json = {{"name", f.name}, {"type", name_of(force_type_names(), f.type)}};
+  json["body"] = f.body.empty() ? Json(nullptr) : Json(f.body);
+  if (f.type == ForceSettings::Type::point) json["where"] = selection(f.where);
+  if (f.value.keys.size() == 1) {
+    json[name_of(force_value_names(), f.type)] = vector(f.value.keys.front().value);
+  } else {
+    json["keyframes"] = Json::array();
+    for (const Keyed::Key& key : f.value.keys) {
+      json["keyframes"].push_back({{"time", key.time}, {"value", vector(key.value)}});
+    }
+  }
+  json["from"] = number(f.from);
+  json["until"] = number(f.until);
+  if (f.type == ForceSettings::Type::wind) {
+    json["air_density"] = f.air_density;
+    json["drag"] = f.drag;
+    json["lift"] = f.lift;
+  }
+  return json;
+}
+
+template <class Settings, class Convert>
+Json list(const std::vector<Settings>& items, const Convert& convert) {
+  Json json = Json::array();
+  for (const Settings& item : items) json.push_back(convert(item));
+  return json;
+}
+
+}  // namespace
+
+std::string resolved_json(const Scene& scene) {
+  Json json;
+  json["title"] = scene.title;
+  json["time"] = {{"duration", scene.time.duration},
+                  {"frame_rate", scene.time.frame_rate},
+                  {"steps_per_frame", scene.time.steps_per_frame}};
+  json["solver"] = {{"integrator", name_of(integrator_names(), scene.solver.integrator)},
+                    {"tolerance", scene.solver.tolerance},
+                    {"max_iterations", scene.solver.max_iterations},
+                    {"linear_tolerance", scene.solver.linear_tolerance}};
+  json["body"] = list(scene.bodies, body);
+  json["pin"] = list(scene.pins, pin);
+  json["force"] = list(scene.forces, force);
+  json["probe"] = list(scene.probes, [](const ProbeSettings& p) {
+    return Json{{"name", p.name}, {"body", p.body}, {"at", vector(p.at)}};
+  });
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace muslin

@@ -1,0 +1,24 @@
+// The words of the scene file: every table and its keys.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "muslin/core/toml_value.hpp"
+
+namespace muslin {
+
+struct VocabularyTable {
+  std::string name;  ///< such as "body", "pin.where", "force.gravity"; "" is the top of the file
+  std::vector<std::string> keys;
+};
+const std::vector<VocabularyTable>& scene_vocabulary();
+
+/// The keys of one table of scene_vocabulary().
+const std::vector<std::string>& known_keys(std::string_view table);
+
+/// Throws Error(input) at the first key of `value` that is reserved for a later version, such as `collider`.
+void refuse_reserved_keys(const TomlValue& value);
+
+}  // namespace muslin

@@ -1,0 +1,55 @@
+// The function that one implicit step minimises over the free vertices:
+//
+//   E(x) = ½ (x − x̃)ᵀ M (x − x̃) + dt² Σᵢ Wᵢ(x)   [J s²]
+//
+// x̃ is the inertial prediction. Held vertices are not unknowns: their rows read zero.
+#pragma once
+
+#include <span>
+
+#include "muslin/solver/solver.hpp"
+
+namespace muslin {
+
+class IncrementalPotential {
+ public:
+  /// Keeps references to the problem and to `prediction`, x̃. dt is the integrator's effective step [s].
+  IncrementalPotential(const StepProblem& problem, ConstVectors prediction, double dt);
+
+  struct Value {
+    double value = 0;
+    double magnitude = 0;  ///< sum of the absolute values of the terms: what rounding is relative to
+  };
+  Value value(ConstVectors x) const;
+
+  /// g = ∂E/∂x, zero on held vertices.
+  void gradient(ConstVectors x, Vectors g) const;
+  /// y = ∂²E/∂x² p, zero on held vertices; p may move held vertices.
+  void hessian_product(ConstVectors x, ConstVectors p, Vectors y) const;
+  /// Positive definite diagonal blocks of (an approximation of) the Hessian; mass alone on held vertices.
+  void diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const;
+  /// The largest safe t along d over all potentials.
+  double max_step(ConstVectors x, ConstVectors d) const;
+
+  struct Imbalance {
+    double largest = 0;  ///< max ‖gᵢ‖ / (mᵢ dt²) over free vertices [m/s²]
+    int vertex = -1;
+  };
+  Imbalance imbalance(ConstVectors g) const;
+  /// What of the imbalance rounding can cause: half a unit in the last place of every coordinate, carried
+  /// through the Hessian that `blocks` are the diagonal of [m/s²]. Nothing below it can be asked for.
+  double rounding_floor(ConstVectors x, std::span<const Mat3> blocks) const;
+
+  std::span<const double> masses() const { return problem_.masses; }
+  bool held(std::size_t v) const { return problem_.fixed[v] != 0; }
+  std::size_t size() const { return prediction_.size(); }
+  ConstVectors prediction() const { return prediction_; }
+  double dt() const { return dt_; }
+
+ private:
+  const StepProblem& problem_;
+  ConstVectors prediction_;
+  double dt_;
+};
+
+}  // namespace muslin

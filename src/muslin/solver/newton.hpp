@@ -1,0 +1,19 @@
+// Truncated Newton with line search: the minimiser behind implicit Euler and BDF2.
+#pragma once
+
+#include "muslin/solver/incremental_potential.hpp"
+#include "muslin/solver/solver.hpp"
+
+namespace muslin {
+
+/// Minimises `function` from x, in place; held vertices of x stay. x must be finite in value. The report's
+/// residual is the imbalance at the returned x. Converged: imbalance ≤ settings.tolerance, or at the level
+/// that rounding of the positions alone can cause.
+///
+/// Each iteration solves H s = −g with the true Hessian by conjugate gradients, loosely at first (Eisenstat
+/// and Walker 1996) and up to the first negative curvature, then backtracks along s until the value has
+/// fallen enough (Armijo). Where values differ by less than their rounding, the slope decides instead
+/// (the approximate Wolfe condition of Hager and Zhang 2005).
+StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings, Vectors x);
+
+}  // namespace muslin

@@ -1,0 +1,153 @@
+#include "muslin/solver/solver.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "muslin/solver/conjugate_gradient.hpp"
+#include "muslin/solver/incremental_potential.hpp"
+#include "muslin/solver/newton.hpp"
+#include "muslin/solver/preconditioner.hpp"
+#include "muslin/solver/symplectic_euler.hpp"
+#include "muslin/solver/vector_operations.hpp"
+
+namespace muslin {
+namespace {
+
+StepReport failed(std::string why) {
+  StepReport report;
+  report.failure = std::move(why);
+  return report;
+}
+
+/// A start for the minimisation: extrapolated with the change of velocity of the last step, or the inertial
+/// prediction where that is lower; never past what the potentials allow. Empty if held vertices cannot move
+/// to their targets safely or no start has a finite value.
+std::vector<Vec3> warm_start(const IncrementalPotential& function, const StepProblem& problem,
+                             const State& state, double dt) {
+  const std::size_t count = function.size();
+  std::vector<Vec3> best;
+  double best_value = INFINITY;
+  const auto consider = [&](std::vector<Vec3> x) {
+    std::vector<Vec3> d(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      d[v] = (function.held(v) ? problem.targets[v] : x[v]) - state.positions[v];
+    }
+    const double safe = function.max_step(state.positions, d);
+    if (safe < 1) {
+      for (std::size_t v = 0; v < count; ++v) {
+        if (!function.held(v)) d[v] *= 0.9 * safe;
+      }
+      if (function.max_step(state.positions, d) < 1) return;
+    }
+    for (std::size_t v = 0; v < count; ++v) {
+      x[v] = function.held(v) ? problem.targets[v] : Vec3(state.positions[v] + d[v]);
+    }
+    const double value = function.value(x).value;
+    if (value < best_value) {
+      best_value = value;
+      best = std::move(x);
+    }
+  };
+  if (!state.previous_velocities.empty()) {
+    std::vector<Vec3> x = state.positions;
+    add(2 * dt, state.velocities, x);
+    add(-dt, state.previous_velocities, x);
+    consider(std::move(x));
+  }
+  consider(std::vector<Vec3>(function.prediction().begin(), function.prediction().end()));
+  if (best.empty()) consider(state.positions);
+  return best;
+}
+
+StepReport solve_implicit(const SolverSettings& settings, const StepContext& context,
+                          const StepProblem& problem, const State& state, std::vector<Vec3>& x) {
+  const IncrementalPotential function(problem, context.inertial_prediction, context.dt);
+  x = warm_start(function, problem, state, context.length);
+  if (x.empty()) return failed("the held vertices cannot reach their targets within this step");
+  return minimize(function, settings, x);
+}
+
+/// One Newton step from x_n on the exact tangent: with x_{n+1} = x_n + dt v_{n+1} it is
+/// (M + dt² K) Δv = dt (f − dt K v_n), and held vertices have a known Δv (Baraff and Witkin 1998).
+StepReport solve_linearly_implicit(const SolverSettings& settings, const StepContext& context,
+                                   const StepProblem& problem, const State& state, std::vector<Vec3>& x) {
+  const std::size_t count = state.positions.size();
+  const double dt = context.dt;
+  const IncrementalPotential function(problem, context.inertial_prediction, dt);
+  std::vector<Vec3> coast(count), rhs(count), s(count), residual(count), g(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    coast[v] =
+        function.held(v) ? Vec3(problem.targets[v] - state.positions[v]) : Vec3(dt * state.velocities[v]);
+  }
+  function.gradient(state.positions, g);
+  function.hessian_product(state.positions, coast, rhs);
+  for (std::size_t v = 0; v < count; ++v) rhs[v] = -g[v] - rhs[v];
+  std::vector<Mat3> blocks(count);
+  function.diagonal_blocks(state.positions, blocks);
+  LinearSettings linear;
+  linear.tolerance = settings.linear_tolerance;
+  linear.negative_curvature = NegativeCurvature::pass;
+  const LinearReport solved =
+      conjugate_gradient(function, state.positions, BlockJacobi(function, blocks), rhs, linear, s, residual);
+  x = state.positions;
+  add(1, coast, x);
+  add(1, s, x);
+  for (std::size_t v = 0; v < count; ++v) {
+    if (function.held(v)) x[v] = problem.targets[v];
+  }
+  const IncrementalPotential::Imbalance imbalance = function.imbalance(residual);
+  StepReport report;
+  report.converged = solved.converged;
+  report.newton_iterations = 1;
+  report.linear_iterations = solved.iterations;
+  report.residual = imbalance.largest;
+  report.worst_vertex = imbalance.vertex;
+  if (!solved.converged) {
+    report.failure = "the linear solve reached a relative residual of " +
+                     std::to_string(solved.relative_residual) + " only";
+  }
+  return report;
+}
+
+}  // namespace
+
+StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
+                      State& state) {
+  assert(problem.masses.size() == state.positions.size());
+  assert(problem.fixed.size() == state.positions.size());
+  assert(state.velocities.size() == state.positions.size());
+  std::vector<Vec3> x;
+  StepReport report;
+  switch (settings.integrator) {
+    case Integrator::implicit_euler:
+    case Integrator::bdf2:
+      report = solve_implicit(settings, context, problem, state, x);
+      break;
+    case Integrator::linearly_implicit_euler:
+      report = solve_linearly_implicit(settings, context, problem, state, x);
+      break;
+    case Integrator::symplectic_euler:
+      report = solve_symplectic(context, problem, state, x);
+      break;
+  }
+  if (report.converged && !all_finite(x)) {
+    report.converged = false;
+    report.failure = "positions are not finite numbers";
+  }
+  if (!report.converged) return report;
+
+  std::vector<Vec3> velocities(x.size());
+  const bool explicit_step = settings.integrator == Integrator::symplectic_euler;
+  const ConstVectors from = explicit_step ? ConstVectors(state.positions) : ConstVectors(context.anchor);
+  for (std::size_t v = 0; v < x.size(); ++v) velocities[v] = (x[v] - from[v]) / context.dt;
+  state.previous_positions = std::exchange(state.positions, std::move(x));
+  state.previous_velocities = std::exchange(state.velocities, std::move(velocities));
+  state.previous_dt = context.length;
+  state.time = context.time_end;
+  ++state.step;
+  return report;
+}
+
+}  // namespace muslin
