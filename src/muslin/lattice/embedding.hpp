@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
@@ -17,12 +19,20 @@ struct Embedding {
   std::size_t size() const { return vertices.size(); }
   /// points = J q; q is #V by 3, points #P by 3.
   void apply(ConstVectors q, Vectors points) const;
-  /// forces_q += Jᵀ f.
+  /// forces_q += Jᵀ f. The sums run over the points in ascending order, so the bits never depend on the
+  /// number of threads; it runs in parallel once prepare_transpose() was called.
   void add_transpose(ConstVectors f, Vectors forces_q) const;
+  /// Lists the points that each of `vertex_count` vertices carries. Call again after changing the weights.
+  void prepare_transpose(std::size_t vertex_count);
+
+ private:
+  std::vector<std::int64_t> first_;  ///< #V + 1; vertex v carries slots [first_[v], first_[v+1])
+  std::vector<std::int64_t> slots_;  ///< 8·point + corner of every nonzero weight
 };
 
 /// Trilinear weights of the voxel each point lies in at rest; a point outside all voxels is carried by the
-/// nearest one (extrapolated).
+/// nearest one (extrapolated). A point in a face shared by voxels is carried by any of them: the weights are
+/// the same. Prepared for the transpose.
 Embedding embed(const Lattice& lattice, ConstVectors points);
 
 }  // namespace muslin

@@ -18,7 +18,10 @@
 namespace muslin {
 
 enum class VoxelRule {
-  cover,      ///< every voxel whose interior meets the solid: the union contains the mesh, none is wasted
+  /// Every voxel whose interior meets the solid: the union contains the mesh, none is wasted. A surface
+  /// within
+  /// 1e-6·width of a voxel's face lies in the face and not in the interior.
+  cover,
   threshold,  ///< voxels with distance(centre) < threshold·width; ties within 1e-6·width are out
 };
 
@@ -33,8 +36,10 @@ struct Lattice {
   double width = 1;              ///< [m]
   Vec3i extent = Vec3i::Zero();  ///< voxels of the bounding grid along x, y, z
 
-  std::vector<Vec3i> voxels;                       ///< #C kept voxels
-  std::vector<double> fill;                        ///< #C share of the voxel that the solid fills, (0, 1]
+  std::vector<Vec3i> voxels;  ///< #C kept voxels
+  /// #C share of the voxel that the solid fills, in [1e-3, 1]: a lower share would leave springs and masses
+  /// that no step can handle. Exact for a closed mesh without self-overlap, else from 8³ samples.
+  std::vector<double> fill;
   std::vector<std::array<int, 8>> voxel_vertices;  ///< #C corner c at offset (c&1, c>>1&1, c>>2&1) in x, y, z
   std::vector<Vec3i> vertices;                     ///< #V integer coordinates
 
@@ -49,8 +54,10 @@ struct Lattice {
 };
 
 /// Builds the lattice of the solid that `mesh` encloses. The grid is centred on the mesh's bounding box,
-/// with at least one voxel along every axis. Memory grows with the kept voxels.
-/// Errors: input, if no voxel is kept or more than 2³⁰ would be.
+/// with at least one voxel along every axis; a size that is a whole number of widths, up to 1e-6·width, gives
+/// that many voxels. For thresholds above one half the grid is wider by the voxels that may be kept around
+/// the box. Memory and time grow with the kept voxels, not with the grid. Same bits for any thread count.
+/// Errors: usage, if a setting is not a usable number; input, if no voxel is kept or more than 2³⁰ would be.
 Lattice build_lattice(const Mesh& mesh, const SignedDistance& distance, const LatticeSettings& settings,
                       const Progress& progress = {});
 

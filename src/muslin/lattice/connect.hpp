@@ -1,0 +1,12 @@
+// From kept voxels to a connected lattice: its vertices and each voxel's corners.
+#pragma once
+
+#include "muslin/lattice/lattice.hpp"
+
+namespace muslin {
+
+/// Fills in `vertices` and `voxel_vertices` from the sorted `voxels`. Throws Error(input) if there are more
+/// vertices than an int counts.
+void connect_voxels(Lattice& lattice);
+
+}  // namespace muslin

@@ -1,0 +1,13 @@
+// How much of a voxel a solid fills, by sampling; for meshes whose volume cannot be computed exactly.
+#pragma once
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/field/signed_distance.hpp"
+
+namespace muslin {
+
+/// Share of 8³ sample points inside the solid, for the cube of this centre and width. Octants farther from
+/// the surface than their half diagonal are decided by one sample.
+double sampled_fill(const SignedDistance& distance, const Vec3& centre, double width);
+
+}  // namespace muslin
