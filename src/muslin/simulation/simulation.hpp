@@ -15,7 +15,7 @@ namespace muslin {
 
 /// One row of diagnostics.csv. Energies in joule, momentum in kg·m/s, over all bodies. The balance
 /// kinetic + elastic + potential − work + dissipated stays what it was at frame 0, up to the solver's
-/// residual.
+/// residual (docs/theory/energy-balance.md).
 struct Diagnostics {
   int frame = 0;
   double time = 0;
@@ -28,24 +28,33 @@ struct Diagnostics {
   double max_stretch = 1;                            ///< largest length / rest length of a spring
   double min_distance = 0;  ///< smallest gap between surfaces in contact [m]; infinity without contact
   double wall_ms = 0;       ///< time this frame took
+
+  double balance() const { return kinetic + elastic + potential - work + dissipated; }
 };
 
 class Simulation {
  public:
   explicit Simulation(std::shared_ptr<const Model> model);
   ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
 
   const Model& model() const;
   const State& state() const;
-  int frame() const;
-  const Diagnostics& diagnostics() const;  ///< of the current frame
+  int frame() const;                       ///< the last finished frame
+  int steps_done() const;                  ///< steps of the frame in work; 0 unless it was interrupted
+  const Diagnostics& diagnostics() const;  ///< of the last finished frame
 
-  /// Advances one frame. A step that fails is halved, up to 8 times; if that fails too, throws
-  /// Error(solver) with frame, time, place and what to change, and the state is that of the last good step.
+  /// Advances to the end of the next frame. A step that fails is halved, up to 8 times; if that fails too,
+  /// throws Error(solver) with frame, time, place and what to change, and the state is that of the last good
+  /// step. Polls progress.cancelled before each step; after Error(interrupted) the next call goes on from
+  /// the step reached.
   void advance(const Progress& progress = {});
 
   /// The complete state as bytes, and back: a run continued from it gives the same bits as one that never
-  /// stopped. restore throws Error(input) if the bytes are damaged or of another model.
+  /// stopped. Only the bodies must be the same; pins, loads, duration and solver settings may have changed
+  /// (pins that are new take hold of their vertices where they are). restore throws Error(input) if the
+  /// bytes are damaged, of other bodies, or inside a frame that now has another number of steps.
   std::vector<std::uint8_t> checkpoint() const;
   void restore(const std::vector<std::uint8_t>& bytes);
 

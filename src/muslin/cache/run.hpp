@@ -1,0 +1,43 @@
+// A scene from its file to its run directory: what `muslin run` does.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace muslin {
+
+struct RunProgress {
+  int frame = 0;            ///< frames finished
+  int total = 0;            ///< last frame of the run
+  double fraction = 0;      ///< of the whole run, or of the stage while building
+  double seconds_left = 0;  ///< estimate from the frames so far; NaN before there is one
+  std::string stage;        ///< what is being done: "distance field", "simulation", …
+};
+
+struct RunOptions {
+  std::filesystem::path directory;     ///< where the run goes
+  std::vector<std::string> overrides;  ///< KEY=VALUE, as read_scene takes them
+  int frames = -1;                     ///< last frame; −1: as the scene says
+  bool resume = false;                 ///< go on from the last checkpoint, if there is one
+  /// Called after each stage, step and frame, from the calling thread.
+  std::function<void(const RunProgress&)> report;
+  /// Polled before each step. When true: a checkpoint is written, the run is marked `interrupted`, and
+  /// run_scene throws Error(interrupted).
+  std::function<bool()> cancelled;
+};
+
+struct RunResult {
+  int first_frame = 0;                ///< 0, or the frame that was resumed from
+  int last_frame = 0;                 ///< the last one written
+  std::vector<std::string> changes;   ///< settings changed since the run that was resumed
+  std::vector<std::string> warnings;  ///< of the model
+};
+
+/// Errors: as read_scene, build_model, RunWriter and Simulation::advance throw them. After Error(solver) the
+/// run is marked `failed`, holds the frames up to there and a checkpoint of the last good step.
+RunResult run_scene(const std::filesystem::path& scene, const RunOptions& options);
+
+}  // namespace muslin

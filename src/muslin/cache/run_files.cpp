@@ -1,0 +1,79 @@
+#include "muslin/cache/run_files.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "muslin/cache/output_file.hpp"
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+
+namespace fs = std::filesystem;
+
+BodyFiles body_files(const std::string& body) {
+  if (body.empty() || body.front() == '.' || body.find_first_of("/\\\n\r\t\"") != std::string::npos ||
+      body.size() > 200) {
+    throw Error(ErrorKind::input, "the body \"" + body + "\" cannot name files",
+                "give it a name of letters, digits, dashes");
+  }
+  return {body + ".skin.obj",    body + ".skin.pc2",    body + ".contour.obj",
+          body + ".contour.pc2", body + ".lattice.vtu", body + ".lattice.pc2"};
+}
+
+std::string checkpoint_name(int frame, int steps) {
+  return steps == 0 ? fmt::format("{:06}.state", frame) : fmt::format("{:06}+{:04}.state", frame, steps);
+}
+
+std::vector<CheckpointFile> list_checkpoints(const fs::path& run) {
+  std::vector<CheckpointFile> found;
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(run / "checkpoint", code)) {
+    const std::string name = entry.path().filename().string();
+    CheckpointFile file;
+    file.path = entry.path();
+    const char* end = name.data() + name.size();
+    const auto frame = std::from_chars(name.data(), end, file.frame);
+    if (frame.ec != std::errc{}) continue;
+    if (frame.ptr != end && *frame.ptr == '+') std::from_chars(frame.ptr + 1, end, file.steps);
+    if (name == checkpoint_name(file.frame, file.steps)) found.push_back(file);
+  }
+  std::sort(found.begin(), found.end(), [](const CheckpointFile& a, const CheckpointFile& b) {
+    return std::pair(a.frame, a.steps) > std::pair(b.frame, b.steps);
+  });
+  return found;
+}
+
+bool is_run(const fs::path& directory) {
+  std::error_code code;
+  if (!fs::is_regular_file(directory / "run.json", code)) return false;
+  const auto json = nlohmann::json::parse(read_file(directory / "run.json"), nullptr, false);
+  return json.is_object() && json.contains("muslin");
+}
+
+void remove_run_files(const fs::path& directory) {
+  std::vector<fs::path> doomed;
+  // run.json goes last: until then the directory is known as a run and can be cleaned again.
+  const auto json = nlohmann::json::parse(read_file(directory / "run.json"), nullptr, false);
+  for (const auto& body : json.value("bodies", nlohmann::json::array())) {
+    const BodyFiles files = body_files(body.value("name", ""));
+    for (const std::string* name : {&files.skin_mesh, &files.skin_cache, &files.contour_mesh,
+                                    &files.contour_cache, &files.lattice_mesh, &files.lattice_cache})
+      doomed.push_back(directory / *name);
+  }
+  for (const CheckpointFile& file : list_checkpoints(directory)) doomed.push_back(file.path);
+  for (const char* name : {"scene.toml", "diagnostics.csv", "probes.csv", "stats.json", "run.json"})
+    doomed.push_back(directory / name);
+  for (const fs::path& path : doomed) {
+    std::error_code code;
+    fs::remove(path, code);
+    if (code) {
+      throw Error(ErrorKind::file, {path.string()}, "cannot remove the earlier run: " + code.message(),
+                  "choose another directory with -o");
+    }
+  }
+}
+
+}  // namespace muslin

@@ -1,0 +1,34 @@
+// Names of the files of a run, and which of them a run owns.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace muslin {
+
+struct BodyFiles {
+  std::string skin_mesh, skin_cache, contour_mesh, contour_cache, lattice_mesh, lattice_cache;
+};
+/// Error(input) if the name cannot be part of a file name.
+BodyFiles body_files(const std::string& body);
+
+/// A checkpoint on the disk: `checkpoint/000012.state` after frame 12, `000012+03.state` three steps later.
+struct CheckpointFile {
+  int frame = 0;
+  int steps = 0;
+  std::filesystem::path path;
+};
+std::string checkpoint_name(int frame, int steps);
+/// Newest first.
+std::vector<CheckpointFile> list_checkpoints(const std::filesystem::path& run);
+
+/// True if the directory holds a run of muslin (finished or not).
+bool is_run(const std::filesystem::path& directory);
+
+/// Removes what an earlier run wrote, and nothing else. Errors: file.
+void remove_run_files(const std::filesystem::path& directory);
+
+}  // namespace muslin

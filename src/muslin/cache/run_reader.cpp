@@ -1,0 +1,159 @@
+#include "muslin/cache/run_reader.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "muslin/cache/output_file.hpp"
+#include "muslin/cache/run_files.hpp"
+#include "muslin/cache/tables.hpp"
+#include "muslin/cache/vtk_file.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/io/mesh_file.hpp"
+
+namespace muslin {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A surface or lattice over time.
+struct Track {
+  Pc2Reader cache;
+  std::vector<Vec3f> at(int frame) const { return cache.read(frame); }
+  std::vector<Vec3f> velocities(int frame, int frames, double frame_rate) const {
+    const int before = std::max(0, frame - 1), after = std::min(frames - 1, frame + 1);
+    std::vector<Vec3f> result = at(after);
+    if (before == after) {
+      std::fill(result.begin(), result.end(), Vec3f::Zero());
+      return result;
+    }
+    const std::vector<Vec3f> earlier = at(before);
+    const auto scale = static_cast<float>(frame_rate / (after - before));
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = scale * (result[i] - earlier[i]);
+    return result;
+  }
+};
+
+struct BodyTracks {
+  Track skin, contour, lattice;
+  Mesh skin_mesh, contour_mesh;
+  RunReader::LatticeShape shape;
+};
+
+}  // namespace
+
+const char* name_of(Surface surface) { return surface == Surface::skin ? "skin" : "contour"; }
+
+struct RunReader::Parts {
+  fs::path directory;
+  Json run;
+  std::string title;
+  std::vector<std::string> names;
+  std::vector<BodyTracks> bodies;
+  std::vector<Diagnostics> diagnostics;
+  int frames = 0;
+  double frame_rate = 24;
+
+  const BodyTracks& body(int index) const { return bodies.at(static_cast<std::size_t>(index)); }
+  const Track& track(int index, Surface surface) const {
+    return surface == Surface::skin ? body(index).skin : body(index).contour;
+  }
+};
+
+RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
+  Parts& parts = *parts_;
+  parts.directory = std::move(directory);
+  const fs::path summary = parts.directory / "run.json";
+  if (!fs::exists(summary)) {
+    throw Error(ErrorKind::file, {parts.directory.string()}, "there is no run here (no run.json)",
+                "name the directory that `muslin run` wrote");
+  }
+  parts.run = Json::parse(read_file(summary), nullptr, false);
+  if (!parts.run.is_object() || !parts.run.contains("muslin") || !parts.run.contains("bodies") ||
+      !parts.run.contains("frame_rate")) {
+    throw Error(ErrorKind::input, {summary.string()}, "this does not describe a run of muslin",
+                "run the scene again");
+  }
+  parts.title = parts.run.value("title", "");
+  parts.frame_rate = parts.run.value("frame_rate", 24.0);
+  parts.diagnostics = read_diagnostics(parts.directory / "diagnostics.csv");
+  std::size_t frames = parts.diagnostics.size();
+  for (const Json& body : parts.run["bodies"]) {
+    parts.names.push_back(body.value("name", ""));
+    const BodyFiles files = body_files(parts.names.back());
+    const auto track = [&](const std::string& name) { return Track{Pc2Reader(parts.directory / name)}; };
+    VtkVoxels voxels = read_voxels(parts.directory / files.lattice_mesh);
+    BodyTracks tracks{track(files.skin_cache),
+                      track(files.contour_cache),
+                      track(files.lattice_cache),
+                      read_mesh(parts.directory / files.skin_mesh).mesh,
+                      read_mesh(parts.directory / files.contour_mesh).mesh,
+                      {std::move(voxels.points), std::move(voxels.voxels)}};
+    const auto fit = [&](const Track& points, std::size_t count, const std::string& file) {
+      if (points.cache.points() != count) {
+        throw Error(ErrorKind::input, {(parts.directory / file).string()},
+                    "the cache has another number of points than its mesh", "run the scene again");
+      }
+      frames = std::min(frames, static_cast<std::size_t>(points.cache.samples()));
+    };
+    fit(tracks.skin, tracks.skin_mesh.vertex_count(), files.skin_cache);
+    fit(tracks.contour, tracks.contour_mesh.vertex_count(), files.contour_cache);
+    fit(tracks.lattice, tracks.shape.rest_positions.size(), files.lattice_cache);
+    parts.bodies.push_back(std::move(tracks));
+  }
+  parts.diagnostics.resize(frames);
+  parts.frames = static_cast<int>(frames);
+}
+
+RunReader::~RunReader() = default;
+RunReader::RunReader(RunReader&&) noexcept = default;
+RunReader& RunReader::operator=(RunReader&&) noexcept = default;
+
+const fs::path& RunReader::directory() const { return parts_->directory; }
+const std::string& RunReader::title() const { return parts_->title; }
+std::string RunReader::resolved_scene() const { return parts_->run.value("scene", Json()).dump(); }
+double RunReader::frame_rate() const { return parts_->frame_rate; }
+int RunReader::frame_count() const { return parts_->frames; }
+const std::vector<std::string>& RunReader::bodies() const { return parts_->names; }
+const std::vector<Diagnostics>& RunReader::diagnostics() const { return parts_->diagnostics; }
+
+RunStatus RunReader::status() const {
+  const std::string status = parts_->run.value("status", "");
+  for (RunStatus known : {RunStatus::finished, RunStatus::interrupted, RunStatus::failed})
+    if (status == name_of(known)) return known;
+  return RunStatus::running;
+}
+
+int RunReader::find_body(const std::string& name) const {
+  const auto& names = parts_->names;
+  if (name.empty() && names.size() == 1) return 0;
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  std::string known;
+  for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
+  throw Error(ErrorKind::usage, {parts_->directory.string()},
+              name.empty() ? "the run has several bodies" : "the run has no body \"" + name + "\"",
+              "choose one with --body: " + known);
+}
+
+const Mesh& RunReader::mesh(int body, Surface surface) const {
+  return surface == Surface::skin ? parts_->body(body).skin_mesh : parts_->body(body).contour_mesh;
+}
+std::vector<Vec3f> RunReader::points(int body, Surface surface, int frame) const {
+  return parts_->track(body, surface).at(frame);
+}
+std::vector<Vec3f> RunReader::velocities(int body, Surface surface, int frame) const {
+  return parts_->track(body, surface).velocities(frame, parts_->frames, parts_->frame_rate);
+}
+const RunReader::LatticeShape& RunReader::lattice(int body) const { return parts_->body(body).shape; }
+std::vector<Vec3f> RunReader::lattice_points(int body, int frame) const {
+  return parts_->body(body).lattice.at(frame);
+}
+std::vector<Vec3f> RunReader::lattice_velocities(int body, int frame) const {
+  return parts_->body(body).lattice.velocities(frame, parts_->frames, parts_->frame_rate);
+}
+
+}  // namespace muslin

@@ -1,0 +1,68 @@
+// Reading a run directory: what pictures, exports and views are made from.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "muslin/cache/point_cache.hpp"
+#include "muslin/cache/run_writer.hpp"
+#include "muslin/geometry/mesh.hpp"
+#include "muslin/simulation/simulation.hpp"
+
+namespace muslin {
+
+/// What a run shows of a body.
+enum class Surface {
+  skin,     ///< the original mesh, carried by the lattice
+  contour,  ///< marching squares or cubes on the deformed lattice
+};
+const char* name_of(Surface surface);
+
+/// A run, finished or not, even while it is being written. Frames 0 … frame_count() − 1 are complete in all
+/// files; the count is taken when the reader is made.
+class RunReader {
+ public:
+  /// Errors: file, if there is no run; input, if it is damaged.
+  explicit RunReader(std::filesystem::path directory);
+  ~RunReader();
+  RunReader(RunReader&&) noexcept;
+  RunReader& operator=(RunReader&&) noexcept;
+
+  const std::filesystem::path& directory() const;
+  RunStatus status() const;  ///< `running` also for a run that was killed
+  const std::string& title() const;
+  std::string resolved_scene() const;  ///< JSON, as Scene::resolved
+  double frame_rate() const;           ///< [1/s]
+  int frame_count() const;
+  const std::vector<std::string>& bodies() const;
+  /// Index of a body by name; an empty name means the only body. Error(usage) naming the bodies there are.
+  int find_body(const std::string& name) const;
+
+  /// The surface at rest as it was written: polygons, UVs, groups.
+  const Mesh& mesh(int body, Surface surface) const;
+  /// Its vertices at a frame, in the same order [m].
+  std::vector<Vec3f> points(int body, Surface surface, int frame) const;
+  /// Their velocities by central differences over the neighbouring frames, one-sided at the ends [m/s].
+  std::vector<Vec3f> velocities(int body, Surface surface, int frame) const;
+
+  /// The body's lattice: rest positions [m], and voxels with their corners in the order of Lattice.
+  struct LatticeShape {
+    std::vector<Vec3> rest_positions;
+    std::vector<std::array<int, 8>> voxels;
+  };
+  const LatticeShape& lattice(int body) const;
+  std::vector<Vec3f> lattice_points(int body, int frame) const;
+  std::vector<Vec3f> lattice_velocities(int body, int frame) const;
+
+  /// Rows of diagnostics.csv, frames 0 … frame_count() − 1.
+  const std::vector<Diagnostics>& diagnostics() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,381 @@
+#include "muslin/cache/run_writer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "muslin/cache/output_file.hpp"
+#include "muslin/cache/point_cache.hpp"
+#include "muslin/cache/run_files.hpp"
+#include "muslin/cache/tables.hpp"
+#include "muslin/cache/vtk_file.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/core/parallel.hpp"
+#include "muslin/io/mesh_file.hpp"
+#include "muslin/simulation/checkpoint.hpp"
+
+namespace muslin {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t small_state = std::size_t{64} << 20;  ///< bytes
+constexpr std::chrono::seconds large_state_interval{10};
+constexpr std::chrono::seconds sync_interval{5};
+constexpr int run_format = 1;
+
+Json parsed_scene(const Model& model) {
+  const Json scene = Json::parse(model.scene.resolved, nullptr, false);
+  return scene.is_discarded() ? Json() : scene;
+}
+
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name") && line.find(": ") != std::string::npos)
+      return line.substr(line.find(": ") + 2);
+  return "unknown";
+}
+
+/// "/body/0/mesh" → "body.0.mesh".
+std::string dotted(std::string pointer) {
+  if (!pointer.empty()) pointer.erase(0, 1);
+  std::replace(pointer.begin(), pointer.end(), '/', '.');
+  return pointer;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string as_text(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+/// The open caches of a body.
+struct BodyCaches {
+  Pc2Writer skin, contour, lattice;
+};
+
+}  // namespace
+
+const char* name_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::running:
+      return "running";
+    case RunStatus::finished:
+      return "finished";
+    case RunStatus::interrupted:
+      return "interrupted";
+    case RunStatus::failed:
+      return "failed";
+  }
+  return "";
+}
+
+std::string statistics_json(const Model& model) {
+  Json bodies = Json::array();
+  for (const Body& body : model.bodies) {
+    const BodyStatistics& s = body.statistics;
+    bodies.push_back(
+        {{"name", body.name},
+         {"vertices", s.vertices},
+         {"voxels", s.voxels},
+         {"tetrahedra", s.tetrahedra},
+         {"springs",
+          {{"edge", s.springs[0]}, {"face_diagonal", s.springs[1]}, {"body_diagonal", s.springs[2]}}},
+         {"mass", s.mass},
+         {"coverage", s.coverage},
+         {"contour_distance", s.contour_distance}});
+  }
+  return Json({{"bodies", bodies}}).dump(2) + "\n";
+}
+
+struct RunWriter::Parts {
+  fs::path directory;
+  Simulation& simulation;
+  int total_frames;
+  DirectoryLock lock;
+  std::vector<BodyCaches> caches;
+  OutputFile diagnostics, probes;
+  bool resumed = false;
+  std::vector<std::string> changes;
+  Json sessions = Json::array();
+  int first_frame = 0;
+  int durable_frame = -1;  ///< of the newest checkpoint known to be on the disk
+  Clock::time_point begin = Clock::now(), last_checkpoint = begin, last_sync = begin;
+
+  Parts(fs::path the_directory, Simulation& the_simulation, int frames)
+      : directory(std::move(the_directory)), simulation(the_simulation), total_frames(frames) {}
+  const Model& model() const { return simulation.model(); }
+  void claim();
+  void start();
+  bool resume();
+  void compare_scene(const Json& run);
+  void open_files(int frames);
+  void append_points();
+  void write_checkpoint(bool durable);
+  void prune_checkpoints() const;
+  void sync();
+  void write_summary(RunStatus status, const std::string& reason) const;
+};
+
+void RunWriter::Parts::claim() {
+  std::error_code code;
+  if (fs::exists(directory, code) && !fs::is_directory(directory)) {
+    throw Error(ErrorKind::file, {directory.string()}, "this is a file, not a directory",
+                "choose another directory with -o");
+  }
+  make_directory(directory);
+  if (!is_run(directory)) {
+    for (const auto& entry : fs::directory_iterator(directory)) {
+      // A process killed in its first moments leaves an empty checkpoint/ and nothing else.
+      const std::string name = entry.path().filename().string();
+      if (name == "checkpoint" || name == "run.json.part") continue;
+      throw Error(ErrorKind::file, {directory.string()}, "the directory is not empty and holds no run",
+                  "choose an empty or a new directory with -o");
+    }
+  }
+  make_directory(directory / "checkpoint");
+  lock = DirectoryLock(directory / "checkpoint", "lock");
+}
+
+void RunWriter::Parts::start() {
+  if (is_run(directory)) remove_run_files(directory);
+  write_summary(RunStatus::running, "");
+  const Model& model = this->model();
+  write_atomically(directory / "scene.toml", model.scene.text);
+  write_atomically(directory / "stats.json", statistics_json(model));
+  for (const Body& body : model.bodies) {
+    const BodyFiles files = body_files(body.name);
+    write_mesh(directory / files.skin_mesh, body.mesh);
+    write_mesh(directory / files.contour_mesh, body.contour.mesh);
+    VtkGrid grid;
+    grid.points = flat(model.of(body, model.rest_positions));
+    for (const auto& voxel : body.lattice.voxel_vertices) grid.add_voxel(voxel);
+    write_vtu(directory / files.lattice_mesh, grid);
+  }
+  open_files(0);
+  append_points();
+  diagnostics.append(diagnostics_row(simulation.diagnostics()));
+  probes.append(probe_rows(simulation));
+  sync();
+  write_checkpoint(true);
+}
+
+/// Opens the caches and tables with their first `frames` frames kept; 0 begins them.
+void RunWriter::Parts::open_files(int frames) {
+  const auto mode = frames == 0 ? OutputFile::Mode::replace : OutputFile::Mode::resume;
+  for (const Body& body : model().bodies) {
+    const BodyFiles files = body_files(body.name);
+    const auto open = [&](const std::string& name, std::size_t points) {
+      return Pc2Writer(directory / name, points, mode, frames);
+    };
+    caches.push_back({open(files.skin_cache, body.mesh.vertex_count()),
+                      open(files.contour_cache, body.contour.mesh.vertex_count()),
+                      open(files.lattice_cache, static_cast<std::size_t>(body.vertex_count))});
+  }
+  const auto table = [&](const char* name, std::string_view header) {
+    const fs::path path = directory / name;
+    if (frames == 0) {
+      OutputFile file(path, OutputFile::Mode::replace);
+      file.append(header);
+      return file;
+    }
+    const std::size_t kept = table_length(read_file(path), frames - 1);
+    if (kept == 0) {
+      throw Error(ErrorKind::input, {path.string()}, "the table has lost its first line",
+                  "start the run anew, without --resume");
+    }
+    OutputFile file(path, OutputFile::Mode::resume);
+    file.truncate(kept);
+    return file;
+  };
+  diagnostics = table("diagnostics.csv", diagnostics_header);
+  probes = table("probes.csv", probes_header);
+}
+
+bool RunWriter::Parts::resume() {
+  if (!is_run(directory)) return false;
+  const std::vector<CheckpointFile> checkpoints = list_checkpoints(directory);
+  if (checkpoints.empty()) return false;
+  const Json run = Json::parse(read_file(directory / "run.json"), nullptr, false);
+  compare_scene(run);
+  std::optional<Error> trouble;
+  for (const CheckpointFile& file : checkpoints) {
+    try {
+      const std::string content = read_file(file.path);
+      simulation.restore({content.begin(), content.end()});
+      open_files(file.frame + 1);
+      first_frame = file.frame;
+      sessions = run["timings"].value("sessions", Json::array());
+      return true;
+    } catch (const Error& error) {
+      // The newest checkpoint may be damaged by a power cut; the one before it serves as well.
+      caches.clear();
+      trouble = Error(error.kind(), {file.path.string()}, error.problem(), error.remedy());
+    }
+  }
+  throw *trouble;
+}
+
+/// Notes what changed since the run was begun; refuses what the frames already written cannot bear.
+void RunWriter::Parts::compare_scene(const Json& run) {
+  const Json old_scene = run.value("scene", Json());
+  std::vector<std::string> bodies;
+  for (const auto& step : Json::diff(old_scene, parsed_scene(model()))) {
+    const std::string setting = dotted(step.value("path", ""));
+    changes.push_back(setting);
+    if (setting.starts_with("body")) bodies.push_back(setting);
+  }
+  if (!bodies.empty()) {
+    throw Error(ErrorKind::input, {directory.string()},
+                "the bodies are not those of the run to resume; changed: " + joined(bodies),
+                "undo the change, or start the run anew without --resume");
+  }
+  if (run.value("frame_rate", 0.0) != model().scene.time.frame_rate) {
+    throw Error(ErrorKind::input, {directory.string()}, "the frame rate is not that of the run to resume",
+                "undo the change, or start the run anew without --resume");
+  }
+}
+
+void RunWriter::Parts::append_points() {
+  const Model& model = this->model();
+  std::vector<Vec3> points;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    const ConstVectors q = model.of(body, simulation.state().positions);
+    points.resize(body.skin.size());
+    body.skin.apply(q, points);
+    caches[b].skin.append(points);
+    points.resize(body.contour.embedding.size());
+    body.contour.embedding.apply(q, points);
+    caches[b].contour.append(points);
+    caches[b].lattice.append(q);
+  }
+}
+
+void RunWriter::Parts::sync() {
+  for (BodyCaches& cache : caches) {
+    cache.skin.sync();
+    cache.contour.sync();
+    cache.lattice.sync();
+  }
+  diagnostics.sync();
+  probes.sync();
+  last_sync = Clock::now();
+}
+
+void RunWriter::Parts::write_checkpoint(bool durable) {
+  const fs::path path =
+      directory / "checkpoint" / checkpoint_name(simulation.frame(), simulation.steps_done());
+  write_atomically(path, as_text(simulation.checkpoint()), durable);
+  if (durable && simulation.steps_done() == 0) durable_frame = simulation.frame();
+  prune_checkpoints();
+  last_checkpoint = Clock::now();
+}
+
+/// Keeps the last two finished frames, the newest state that is surely on the disk, and a state inside a
+/// frame only while it is the newest.
+void RunWriter::Parts::prune_checkpoints() const {
+  int kept = 0;
+  for (const CheckpointFile& file : list_checkpoints(directory)) {
+    const bool newest = file.frame == simulation.frame() && file.steps == simulation.steps_done();
+    const bool finished_frame = file.steps == 0 && file.frame <= simulation.frame();
+    if (newest || (finished_frame && (kept < 2 || file.frame == durable_frame))) {
+      if (finished_frame) ++kept;
+      continue;
+    }
+    std::error_code ignored;
+    fs::remove(file.path, ignored);
+  }
+}
+
+void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason) const {
+  const Model& model = this->model();
+  Json run;
+  run["muslin"] = {{"version", MUSLIN_VERSION}, {"format", run_format}};
+  run["title"] = model.scene.title;
+  run["status"] = name_of(status);
+  if (!reason.empty()) run["reason"] = reason;
+  run["frames"] = total_frames;
+  run["frame_rate"] = model.scene.time.frame_rate;
+  run["bodies"] = Json::array();
+  for (const Body& body : model.bodies) {
+    const BodyFiles files = body_files(body.name);
+    run["bodies"].push_back({{"name", body.name},
+                             {"skin", {{"mesh", files.skin_mesh}, {"cache", files.skin_cache}}},
+                             {"contour", {{"mesh", files.contour_mesh}, {"cache", files.contour_cache}}},
+                             {"lattice", {{"mesh", files.lattice_mesh}, {"cache", files.lattice_cache}}}});
+  }
+  run["warnings"] = model.warnings;
+  run["scene"] = parsed_scene(model);
+  run["machine"] = {{"processor", processor()},
+                    {"cores", std::thread::hardware_concurrency()},
+                    {"threads", thread_count()},
+                    {"compiler", __VERSION__}};
+  Json all = sessions;
+  all.push_back({{"from_frame", first_frame},
+                 {"to_frame", simulation.frame()},
+                 {"wall_s", std::chrono::duration<double>(Clock::now() - begin).count()},
+                 {"changed", changes}});
+  run["timings"] = {{"sessions", all}};
+  write_atomically(directory / "run.json", run.dump(2) + "\n");
+}
+
+RunWriter::RunWriter(fs::path directory, Simulation& simulation, int total_frames, bool resume)
+    : parts_(std::make_unique<Parts>(std::move(directory), simulation, total_frames)) {
+  for (const Body& body : simulation.model().bodies) body_files(body.name);
+  parts_->claim();
+  parts_->resumed = resume && parts_->resume();
+  if (!parts_->resumed) {
+    parts_->start();
+    return;
+  }
+  write_atomically(parts_->directory / "scene.toml", simulation.model().scene.text);
+  parts_->prune_checkpoints();
+  parts_->write_summary(RunStatus::running, "");
+}
+
+RunWriter::~RunWriter() = default;
+
+bool RunWriter::resumed() const { return parts_->resumed; }
+const std::vector<std::string>& RunWriter::changes() const { return parts_->changes; }
+
+void RunWriter::write_frame() {
+  Parts& parts = *parts_;
+  parts.append_points();
+  parts.diagnostics.append(diagnostics_row(parts.simulation.diagnostics()));
+  parts.probes.append(probe_rows(parts.simulation));
+  const auto now = Clock::now();
+  const bool durable = now - parts.last_sync >= sync_interval;
+  const std::size_t state_bytes = 4 * sizeof(Vec3) * parts.model().vertex_count();
+  if (state_bytes > small_state && now - parts.last_checkpoint < large_state_interval) return;
+  if (durable) parts.sync();
+  parts.write_checkpoint(durable);
+}
+
+void RunWriter::finish(RunStatus status, const std::string& reason) {
+  parts_->sync();
+  parts_->write_checkpoint(true);
+  parts_->write_summary(status, reason);
+}
+
+void RunWriter::abandon(const std::string& reason) {
+  try {
+    parts_->write_summary(RunStatus::failed, reason);
+  } catch (const Error&) {
+    // A full disk refuses this as well; the caller reports what filled it.
+  }
+}
+
+}  // namespace muslin

@@ -1,0 +1,54 @@
+// Writing a run directory: what a run leaves, and what the next session goes on from.
+// docs/guide/run-directory.md lists the files.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "muslin/simulation/simulation.hpp"
+
+namespace muslin {
+
+enum class RunStatus { running, finished, interrupted, failed };
+const char* name_of(RunStatus status);
+
+/// The counts and masses of the bodies, as in stats.json and `muslin check --json`.
+std::string statistics_json(const Model& model);
+
+/// Writes a run. One process at a time; a lock in `checkpoint/` sees to it.
+///
+/// A frame goes to the disk in this order: points, rows, checkpoint. Whatever moment the process is killed,
+/// the newest checkpoint therefore has all its frames, and what lies behind it is cut off on resume.
+/// A checkpoint is written after every frame; states beyond 64 MiB at least every 10 s instead. The content
+/// is forced to the disk every 5 s and at the end. The last two checkpoints are kept.
+class RunWriter {
+ public:
+  /// Begins a run at the simulation's frame 0, or with `resume` restores the simulation from the newest
+  /// checkpoint and goes on behind it; without one it begins.
+  /// An earlier run in `directory` is replaced, only muslin's own files. Errors: file, if the directory
+  /// cannot be made or written, holds something else than a run, or is being written by another process;
+  /// input, if the run to resume has other bodies, naming what changed.
+  RunWriter(std::filesystem::path directory, Simulation& simulation, int total_frames, bool resume);
+  /// Leaves the status `running`, as a killed process does, unless finish() was called.
+  ~RunWriter();
+
+  bool resumed() const;
+  /// Settings that differ from those of the run that is resumed, e.g. "time.duration".
+  const std::vector<std::string>& changes() const;
+  /// Adds the frame that the simulation has just finished.
+  void write_frame();
+  /// Writes a checkpoint of the very step reached, flushes everything, sets the status. `reason` says why a
+  /// run failed or stopped.
+  void finish(RunStatus status, const std::string& reason = "");
+  /// Marks the run failed after Error(file), as far as the disk allows; the last checkpoint stays the one
+  /// to go on from.
+  void abandon(const std::string& reason);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,110 @@
+#include "muslin/cache/tables.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "muslin/cache/output_file.hpp"
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+namespace {
+
+/// A field as RFC 4180 wants it.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
+}  // namespace
+
+const std::string_view diagnostics_header =
+    "frame,time,kinetic,elastic,potential,work,dissipated,momentum_x,momentum_y,momentum_z,"
+    "newton_iterations,linear_iterations,residual,max_stretch,min_distance,wall_ms\n";
+const std::string_view probes_header = "frame,time,name,x,y,z,vx,vy,vz\n";
+
+std::string diagnostics_row(const Diagnostics& row) {
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}\n", row.frame, row.time,
+                     row.kinetic, row.elastic, row.potential, row.work, row.dissipated, row.momentum.x(),
+                     row.momentum.y(), row.momentum.z(), row.newton_iterations, row.linear_iterations,
+                     row.residual, row.max_stretch, row.min_distance, row.wall_ms);
+}
+
+std::string probe_rows(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  const State& state = simulation.state();
+  const Diagnostics& row = simulation.diagnostics();
+  std::string text;
+  for (const Probe& probe : model.probes) {
+    const Body& body = model.bodies[static_cast<std::size_t>(probe.body)];
+    Vec3 x = Vec3::Zero(), v = Vec3::Zero();
+    probe.point.apply(model.of(body, state.positions), Vectors(&x, 1));
+    probe.point.apply(model.of(body, state.velocities), Vectors(&v, 1));
+    text += fmt::format("{},{},{},{},{},{},{},{},{}\n", row.frame, row.time, quoted(probe.name), x.x(), x.y(),
+                        x.z(), v.x(), v.y(), v.z());
+  }
+  return text;
+}
+
+std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  if (!text.starts_with(diagnostics_header)) {
+    throw Error(ErrorKind::input, {path.string(), 1}, "this is not a table of diagnostics",
+                "run the scene again");
+  }
+  std::vector<Diagnostics> rows;
+  int line = 1;
+  for (std::size_t at = diagnostics_header.size(); at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string::npos) break;
+    ++line;
+    std::array<double, 16> numbers{};
+    const char* field = text.c_str() + at;
+    for (std::size_t column = 0; column < numbers.size(); ++column) {
+      char* after = nullptr;
+      numbers[column] = std::strtod(field, &after);
+      const char separator = column + 1 < numbers.size() ? ',' : '\n';
+      if (after == field || *after != separator) {
+        throw Error(ErrorKind::input, {path.string(), line}, "a number is missing", "run the scene again");
+      }
+      field = after + 1;
+    }
+    Diagnostics row;
+    row.frame = static_cast<int>(numbers[0]);
+    row.time = numbers[1];
+    row.kinetic = numbers[2];
+    row.elastic = numbers[3];
+    row.potential = numbers[4];
+    row.work = numbers[5];
+    row.dissipated = numbers[6];
+    row.momentum = {numbers[7], numbers[8], numbers[9]};
+    row.newton_iterations = static_cast<int>(numbers[10]);
+    row.linear_iterations = static_cast<int>(numbers[11]);
+    row.residual = numbers[12];
+    row.max_stretch = numbers[13];
+    row.min_distance = numbers[14];
+    row.wall_ms = numbers[15];
+    rows.push_back(row);
+    at = end + 1;
+  }
+  return rows;
+}
+
+std::size_t table_length(std::string_view table, int last_frame) {
+  std::size_t at = table.find('\n');
+  if (at == std::string_view::npos) return 0;
+  ++at;
+  while (at < table.size()) {
+    const std::size_t end = table.find('\n', at);
+    if (end == std::string_view::npos) break;
+    if (std::atoi(std::string(table.substr(at, 12)).c_str()) > last_frame) break;
+    at = end + 1;
+  }
+  return at;
+}
+
+}  // namespace muslin

@@ -1,0 +1,29 @@
+// The tables of a run: diagnostics.csv and probes.csv.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "muslin/simulation/simulation.hpp"
+
+namespace muslin {
+
+/// First lines of the tables, with their line ends.
+extern const std::string_view diagnostics_header;
+extern const std::string_view probes_header;
+
+/// One line, numbers so that reading them gives the same double; infinity is `inf`.
+std::string diagnostics_row(const Diagnostics& row);
+/// One line per probe of the model.
+std::string probe_rows(const Simulation& simulation);
+
+/// The rows of a diagnostics table; an unfinished last line is left out. Errors: file, input.
+std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path);
+
+/// Length of the beginning of a table that holds its first line and all rows up to `last_frame` (the first
+/// column). 0 if the table is not one.
+std::size_t table_length(std::string_view table, int last_frame);
+
+}  // namespace muslin

@@ -1,0 +1,51 @@
+// Where the energy of a step went: stored, supplied from outside, or lost. docs/theory/energy-balance.md
+// derives the sums; every one follows from the integrator's discrete equation of motion
+//
+//   M (v₁ − v̂)/dt + Σᵢ gᵢ = R,     R zero at free vertices and the reaction at held ones,
+//
+// multiplied by the displacement Δ = x₁ − x₀ of the step.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "muslin/potential/potential.hpp"
+#include "muslin/potential/state.hpp"
+#include "muslin/scene/model.hpp"
+#include "muslin/solver/solver.hpp"
+
+namespace muslin {
+
+/// A potential of the step, with its place in the balance.
+struct ActingPotential {
+  EnergyRole role = EnergyRole::elastic;
+  const Potential* potential = nullptr;
+};
+
+/// A step that has been solved.
+struct SolvedStep {
+  Integrator integrator = Integrator::implicit_euler;
+  double length = 0;                      ///< [s]
+  const StepContext* context = nullptr;   ///< as it was solved
+  const State* before = nullptr;          ///< at its beginning
+  const State* after = nullptr;           ///< at its end
+  std::span<const double> masses;         ///< #V [kg]
+  std::span<const std::uint8_t> fixed;    ///< #V, 1 where held
+  std::span<const ActingPotential> acts;  ///< what acted
+};
+
+/// Energies [J] that crossed the border of the system during a step.
+struct EnergyFlow {
+  double work = 0;        ///< done by loads and by held vertices that moved
+  double dissipated = 0;  ///< taken by damping and by the integrator (which may also give: then < 0)
+};
+
+/// The flow of one step. The line integrals of stored energies are taken by quadrature of their gradients,
+/// not from their values, so that the balance of the values is a check and not an identity.
+EnergyFlow energy_flow(const SolvedStep& step);
+
+double kinetic_energy(std::span<const double> masses, ConstVectors velocities);  ///< ½ Σ m |v|² [J]
+Vec3 total_momentum(std::span<const double> masses, ConstVectors velocities);    ///< Σ m v [kg·m/s]
+
+}  // namespace muslin

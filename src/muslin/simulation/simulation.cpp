@@ -1,0 +1,442 @@
+#include "muslin/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/constraint/holds.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/core/parallel.hpp"
+#include "muslin/simulation/checkpoint.hpp"
+#include "muslin/simulation/energy_account.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr int max_halvings = 8;
+
+/// What a run has counted so far, beyond its state.
+struct Tally {
+  double work = 0, dissipated = 0;      ///< since the start [J]
+  std::vector<double> stored;           ///< energy of each potential, then of each load [J]
+  std::int64_t newton = 0, linear = 0;  ///< iterations of the frame in work
+  double residual = 0;                  ///< largest of the frame in work [m/s²]
+};
+
+/// A step that could not be solved even when halved as often as allowed.
+struct StepFailure {
+  StepReport report;
+};
+
+/// Identifies a pin across runs: its anchors make sense only for the same vertices, caught at the same time.
+struct PinKey {
+  std::uint64_t hash = 0;
+  std::uint64_t vertices = 0;
+  bool operator==(const PinKey&) const = default;
+};
+PinKey pin_key(const Pin& pin) {
+  std::uint64_t hash = hash_bytes(pin.name.data(), pin.name.size());
+  hash = hash_bytes(pin.vertices.data(), pin.vertices.size() * sizeof(int), hash);
+  return {hash_bytes(&pin.from, sizeof pin.from, hash), pin.vertices.size()};
+}
+
+std::vector<std::uint64_t> term_keys(const Model& model) {
+  std::vector<std::uint64_t> keys;
+  for (const PotentialTerm& term : model.potentials)
+    keys.push_back(hash_bytes(term.name.data(), term.name.size()));
+  for (const LoadTerm& term : model.loads) keys.push_back(hash_bytes(term.name.data(), term.name.size()));
+  return keys;
+}
+
+double max_stretch(const Body& body, ConstVectors x) {
+  const Springs& springs = body.springs;
+  if (springs.count == 0) return 1;
+  struct Largest {
+    double ratio = 0;
+    Largest operator+(const Largest& other) const { return {std::max(ratio, other.ratio)}; }
+  };
+  constexpr std::size_t runs_per_block = 64;
+  return parallel_sum(springs.runs.size(), runs_per_block, Largest{},
+                      [&](std::size_t begin, std::size_t end) {
+                        Largest largest;
+                        for (std::size_t r = begin; r < end; ++r) {
+                          const SpringRun& run = springs.runs[r];
+                          const auto& direction = springs.directions[static_cast<std::size_t>(run.direction)];
+                          const double rest = body.lattice.width * direction.offset.cast<double>().norm();
+                          double squared = 0;
+                          for (int i = 0; i < run.length; ++i) {
+                            const auto a = static_cast<std::size_t>(run.a + i);
+                            const auto b = static_cast<std::size_t>(run.b + i);
+                            squared = std::max(squared, (x[b] - x[a]).squaredNorm());
+                          }
+                          largest.ratio = std::max(largest.ratio, std::sqrt(squared) / rest);
+                        }
+                        return largest;
+                      })
+      .ratio;
+}
+
+}  // namespace
+
+struct Simulation::Parts {
+  std::shared_ptr<const Model> model;
+  State state;
+  Holds holds;
+  Tally tally;
+  int frame = 0;
+  int steps_done = 0;
+  double wall_ms = 0;  ///< spent on the frame in work
+  Diagnostics diagnostics;
+  std::vector<std::uint8_t> fixed;
+  std::vector<Vec3> targets;
+
+  explicit Parts(std::shared_ptr<const Model> the_model);
+  const TimeSettings& time() const { return model->scene.time; }
+  double time_of(int at_frame, int steps) const {
+    // One division of whole numbers, so that second 1 is exactly 1 however many steps lead there.
+    return (static_cast<double>(at_frame) * time().steps_per_frame + steps) /
+           (time().frame_rate * time().steps_per_frame);
+  }
+  void step();
+  void advance_by(double length, int halvings);
+  void account(const StepContext& context, double length, const State& before,
+               const std::vector<std::unique_ptr<Potential>>& loads);
+  void restore_holds(const std::vector<PinKey>& pins, const Holds& saved);
+  void restore_stored(const std::vector<std::uint64_t>& terms, const std::vector<double>& saved);
+  std::vector<std::unique_ptr<Potential>> potentials_of_loads(const StepContext& context) const;
+  void finish_frame();
+  [[noreturn]] void fail(const StepReport& report) const;
+};
+
+Simulation::Parts::Parts(std::shared_ptr<const Model> the_model) : model(std::move(the_model)) {
+  const std::size_t count = model->vertex_count();
+  state.positions = model->rest_positions;
+  state.velocities.assign(count, Vec3::Zero());
+  for (std::size_t b = 0; b < model->bodies.size() && b < model->scene.bodies.size(); ++b) {
+    const Body& body = model->bodies[b];
+    std::fill_n(state.velocities.begin() + body.first_vertex, body.vertex_count,
+                model->scene.bodies[b].velocity);
+  }
+  fixed.resize(count);
+  targets.resize(count);
+
+  const StepContext context = step_context(model->scene.solver.integrator, state, time().step());
+  for (const PotentialTerm& term : model->potentials)
+    tally.stored.push_back(term.potential->value(state.positions));
+  const auto loads = potentials_of_loads(context);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const EnergyRole role = model->loads[i].role;
+    const bool stores = role == EnergyRole::elastic || role == EnergyRole::potential;
+    tally.stored.push_back(stores && loads[i] ? loads[i]->value(state.positions) : 0.0);
+  }
+  finish_frame();
+}
+
+std::vector<std::unique_ptr<Potential>> Simulation::Parts::potentials_of_loads(
+    const StepContext& context) const {
+  std::vector<std::unique_ptr<Potential>> potentials;
+  for (const LoadTerm& term : model->loads) potentials.push_back(term.load->potential(context));
+  return potentials;
+}
+
+void Simulation::Parts::step() {
+  const State start = state;
+  const Holds start_holds = holds;
+  const Tally start_tally = tally;
+  try {
+    advance_by(time().step(), 0);
+  } catch (const StepFailure& failure) {
+    state = start;
+    holds = start_holds;
+    tally = start_tally;
+    fail(failure.report);
+  }
+  ++steps_done;
+  state.time = time_of(frame, steps_done);
+}
+
+void Simulation::Parts::advance_by(double length, int halvings) {
+  const SolverSettings& settings = model->scene.solver;
+  const State before = state;
+  const StepContext context = step_context(settings.integrator, before, length);
+  const auto loads = potentials_of_loads(context);
+  Holds next = holds;
+  next.step(model->pins, context.time_begin, context.time_end, before.positions, fixed, targets);
+
+  StepProblem problem{model->masses, {}, fixed, targets};
+  for (const PotentialTerm& term : model->potentials) problem.potentials.push_back(term.potential.get());
+  for (const auto& load : loads)
+    if (load) problem.potentials.push_back(load.get());
+  const StepReport report = solve_step(settings, context, problem, state);
+  tally.newton += report.newton_iterations;
+  tally.linear += report.linear_iterations;
+  if (!report.converged) {
+    if (halvings == max_halvings) throw StepFailure{report};
+    advance_by(length / 2, halvings + 1);
+    advance_by(length / 2, halvings + 1);
+    return;
+  }
+  tally.residual = std::max(tally.residual, report.residual);
+  holds = std::move(next);
+  account(context, length, before, loads);
+}
+
+void Simulation::Parts::account(const StepContext& context, double length, const State& before,
+                                const std::vector<std::unique_ptr<Potential>>& loads) {
+  std::vector<ActingPotential> acts;
+  std::size_t slot = 0;
+  for (const PotentialTerm& term : model->potentials) {
+    acts.push_back({term.role, term.potential.get()});
+    if (term.role == EnergyRole::elastic || term.role == EnergyRole::potential)
+      tally.stored[slot] = term.potential->value(state.positions);
+    ++slot;
+  }
+  for (std::size_t i = 0; i < loads.size(); ++i, ++slot) {
+    const EnergyRole role = model->loads[i].role;
+    if (loads[i]) acts.push_back({role, loads[i].get()});
+    if (role != EnergyRole::elastic && role != EnergyRole::potential) continue;
+    // A field that is switched or turned while a body is in it does work on the body.
+    const double begin = loads[i] ? loads[i]->value(before.positions) : 0.0;
+    tally.work += begin - tally.stored[slot];
+    tally.stored[slot] = loads[i] ? loads[i]->value(state.positions) : 0.0;
+  }
+  const EnergyFlow flow = energy_flow(
+      {model->scene.solver.integrator, length, &context, &before, &state, model->masses, fixed, acts});
+  tally.work += flow.work;
+  tally.dissipated += flow.dissipated;
+}
+
+void Simulation::Parts::finish_frame() {
+  Diagnostics row;
+  row.frame = frame;
+  row.time = state.time;
+  row.kinetic = kinetic_energy(model->masses, state.velocities);
+  for (std::size_t i = 0; i < tally.stored.size(); ++i) {
+    const EnergyRole role = i < model->potentials.size() ? model->potentials[i].role
+                                                         : model->loads[i - model->potentials.size()].role;
+    if (role == EnergyRole::elastic) row.elastic += tally.stored[i];
+    if (role == EnergyRole::potential) row.potential += tally.stored[i];
+  }
+  row.work = tally.work;
+  row.dissipated = tally.dissipated;
+  row.momentum = total_momentum(model->masses, state.velocities);
+  row.newton_iterations = static_cast<int>(tally.newton);
+  row.linear_iterations = static_cast<int>(tally.linear);
+  row.residual = tally.residual;
+  row.max_stretch = 0;
+  for (const Body& body : model->bodies)
+    row.max_stretch = std::max(row.max_stretch, max_stretch(body, model->of(body, state.positions)));
+  if (model->bodies.empty()) row.max_stretch = 1;
+  row.min_distance = std::numeric_limits<double>::infinity();
+  row.wall_ms = wall_ms;
+  diagnostics = row;
+  tally.newton = tally.linear = 0;
+  tally.residual = 0;
+  wall_ms = 0;
+}
+
+void Simulation::Parts::fail(const StepReport& report) const {
+  std::string place;
+  if (report.worst_vertex >= 0) {
+    const Vec3& x = state.positions[static_cast<std::size_t>(report.worst_vertex)];
+    for (const Body& body : model->bodies) {
+      const int local = report.worst_vertex - body.first_vertex;
+      if (local >= 0 && local < body.vertex_count)
+        place = fmt::format(", worst in body \"{}\" near ({:.4g}, {:.4g}, {:.4g}) m", body.name, x.x(), x.y(),
+                            x.z());
+    }
+    if (place.empty()) place = fmt::format(", worst near ({:.4g}, {:.4g}, {:.4g}) m", x.x(), x.y(), x.z());
+  }
+  const bool explicit_steps = model->scene.solver.integrator == Integrator::symplectic_euler;
+  throw Error(ErrorKind::solver,
+              fmt::format("the solver could not go on in frame {} after {:.6g} s, even with steps halved {} "
+                          "times{}: {}",
+                          frame + 1, state.time, max_halvings, place, report.failure),
+              fmt::format("raise time.steps_per_frame (now {}){}", time().steps_per_frame,
+                          explicit_steps ? ", soften the material, or use solver.integrator = "
+                                           "\"implicit_euler\", which has no limit on the step"
+                                         : ", soften the material, or look at the pins and forces there"));
+}
+
+Simulation::Simulation(std::shared_ptr<const Model> model)
+    : parts_(std::make_unique<Parts>(std::move(model))) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+const Model& Simulation::model() const { return *parts_->model; }
+const State& Simulation::state() const { return parts_->state; }
+int Simulation::frame() const { return parts_->frame; }
+int Simulation::steps_done() const { return parts_->steps_done; }
+const Diagnostics& Simulation::diagnostics() const { return parts_->diagnostics; }
+
+void Simulation::advance(const Progress& progress) {
+  Parts& parts = *parts_;
+  const int steps = parts.time().steps_per_frame;
+  using Clock = std::chrono::steady_clock;
+  while (parts.steps_done < steps) {
+    progress.at(static_cast<double>(parts.steps_done) / steps, "simulation");
+    const auto begin = Clock::now();
+    parts.step();
+    parts.wall_ms += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  }
+  ++parts.frame;
+  parts.steps_done = 0;
+  parts.finish_frame();
+}
+
+std::vector<std::uint8_t> Simulation::checkpoint() const {
+  const Parts& parts = *parts_;
+  ByteWriter out(
+      {model_fingerprint(*parts.model), parts.frame, parts.steps_done, parts.time().steps_per_frame});
+  const State& state = parts.state;
+  out.values(state.positions);
+  out.values(state.velocities);
+  out.values(state.previous_positions);
+  out.values(state.previous_velocities);
+  out.value(state.previous_dt);
+  out.value(state.time);
+  out.value(state.step);
+
+  std::vector<PinKey> pins;
+  for (const Pin& pin : parts.model->pins) pins.push_back(pin_key(pin));
+  out.values(pins);
+  out.values(parts.holds.holding);
+  out.values(parts.holds.anchors);
+
+  const Tally& tally = parts.tally;
+  out.value(tally.work);
+  out.value(tally.dissipated);
+  const std::vector<std::uint64_t> terms = term_keys(*parts.model);
+  out.values(terms);
+  out.values(tally.stored);
+  out.value(tally.newton);
+  out.value(tally.linear);
+  out.value(tally.residual);
+
+  const Diagnostics& row = parts.diagnostics;
+  for (double number :
+       {row.kinetic, row.elastic, row.potential, row.work, row.dissipated, row.momentum.x(), row.momentum.y(),
+        row.momentum.z(), row.residual, row.max_stretch, row.min_distance, row.time})
+    out.value(number);
+  out.value(row.newton_iterations);
+  out.value(row.linear_iterations);
+  return std::move(out).finish();
+}
+
+void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
+  Parts& parts = *parts_;
+  const std::size_t count = parts.model->vertex_count();
+  const CheckpointHeader header = read_checkpoint_header(bytes);
+  if (header.fingerprint != model_fingerprint(*parts.model)) {
+    throw Error(ErrorKind::input,
+                "the checkpoint belongs to other bodies: a mesh, a lattice or a material changed",
+                "undo the change, or start the run anew");
+  }
+  if (header.steps != 0 && header.steps_per_frame != parts.time().steps_per_frame) {
+    throw Error(ErrorKind::input,
+                fmt::format("the checkpoint lies inside a frame of {} steps, the scene now has {}",
+                            header.steps_per_frame, parts.time().steps_per_frame),
+                "resume from the checkpoint before it");
+  }
+  ByteReader in(bytes);
+  State state;
+  state.positions = in.values<Vec3>();
+  state.velocities = in.values<Vec3>();
+  state.previous_positions = in.values<Vec3>();
+  state.previous_velocities = in.values<Vec3>();
+  const auto fits = [count](const std::vector<Vec3>& vectors) {
+    return vectors.size() == count || vectors.empty();
+  };
+  if (state.positions.size() != count || state.velocities.size() != count ||
+      !fits(state.previous_positions) || !fits(state.previous_velocities)) {
+    throw Error(ErrorKind::input, "the checkpoint has another number of vertices", "start the run anew");
+  }
+  state.previous_dt = in.value<double>();
+  state.time = in.value<double>();
+  state.step = in.value<std::int64_t>();
+
+  const auto pins = in.values<PinKey>();
+  Holds holds;
+  holds.holding = in.values<std::uint8_t>();
+  holds.anchors = in.values<Vec3>();
+
+  Tally tally;
+  tally.work = in.value<double>();
+  tally.dissipated = in.value<double>();
+  const auto terms = in.values<std::uint64_t>();
+  const auto stored = in.values<double>();
+  tally.newton = in.value<std::int64_t>();
+  tally.linear = in.value<std::int64_t>();
+  tally.residual = in.value<double>();
+
+  Diagnostics row;
+  for (double* number :
+       {&row.kinetic, &row.elastic, &row.potential, &row.work, &row.dissipated, &row.momentum.x(),
+        &row.momentum.y(), &row.momentum.z(), &row.residual, &row.max_stretch, &row.min_distance, &row.time})
+    *number = in.value<double>();
+  row.newton_iterations = in.value<int>();
+  row.linear_iterations = in.value<int>();
+  row.frame = static_cast<int>(header.frame);
+
+  parts.state = std::move(state);
+  parts.tally = std::move(tally);
+  parts.frame = row.frame;
+  parts.steps_done = static_cast<int>(header.steps);
+  parts.wall_ms = 0;
+  parts.diagnostics = row;
+  parts.restore_holds(pins, holds);
+  parts.restore_stored(terms, stored);
+}
+
+void Simulation::Parts::restore_holds(const std::vector<PinKey>& pins, const Holds& saved) {
+  holds = Holds{};
+  if (saved.holding.size() != pins.size()) return;
+  // Every pin that is still there keeps its anchors; a new one takes hold in its first step.
+  for (const Pin& pin : model->pins) {
+    const PinKey key = pin_key(pin);
+    std::vector<Vec3> anchors(pin.vertices.size(), Vec3::Zero());
+    std::uint8_t holding = 0;
+    std::size_t first = 0;
+    for (std::size_t p = 0; p < pins.size(); ++p) {
+      if (pins[p] == key && first + key.vertices <= saved.anchors.size()) {
+        holding = saved.holding[p];
+        std::copy_n(saved.anchors.begin() + static_cast<std::ptrdiff_t>(first), key.vertices,
+                    anchors.begin());
+        break;
+      }
+      first += pins[p].vertices;
+    }
+    holds.holding.push_back(holding);
+    holds.anchors.insert(holds.anchors.end(), anchors.begin(), anchors.end());
+  }
+}
+
+void Simulation::Parts::restore_stored(const std::vector<std::uint64_t>& terms,
+                                       const std::vector<double>& saved) {
+  const std::vector<std::uint64_t> keys = term_keys(*model);
+  std::vector<bool> used(saved.size(), false);
+  tally.stored.assign(keys.size(), 0.0);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    for (std::size_t j = 0; j < saved.size(); ++j) {
+      if (used[j] || terms[j] != keys[i]) continue;
+      used[j] = true;
+      tally.stored[i] = saved[j];
+      break;
+    }
+  }
+  // Energy that came or went because the scene was changed in between was put in or taken out from outside.
+  for (std::size_t j = 0; j < saved.size(); ++j)
+    if (!used[j]) tally.work -= saved[j];
+  for (std::size_t i = 0; i < model->potentials.size(); ++i) {
+    const double now = model->potentials[i].potential->value(state.positions);
+    tally.work += now - tally.stored[i];
+    tally.stored[i] = now;
+  }
+}
+
+}  // namespace muslin
