@@ -38,7 +38,9 @@ TEST(WindingNumber, IsOneInsideAndZeroOutside) {
   const Mesh mesh = shapes::sphere(1, 4);
   const WindingNumber winding(mesh.positions, triangulate(mesh).triangles);
   for (const Vec3& p : shapes::points_around(mesh.bounds(), 1000, 0.3))
-    if (std::abs(p.norm() - 1) > 0.01) EXPECT_NEAR(winding(p), p.norm() < 1 ? 1 : 0, 4e-3) << p.transpose();
+    if (std::abs(p.norm() - 1) > 0.01) {
+      EXPECT_NEAR(winding(p), p.norm() < 1 ? 1 : 0, 4e-3) << p.transpose();
+    }
 }
 
 TEST(WindingNumber, AgreesWithBruteForce) {
