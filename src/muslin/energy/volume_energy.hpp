@@ -1,0 +1,44 @@
+// Conservation of volume over the tetrahedra of a lattice.
+//
+//   W = Σ ½ κ f V₀ (V/V₀ − 1)²,   V = (x₁−x₀)·((x₂−x₀)×(x₃−x₀)) / 6,   V₀ = width³/6
+//
+// with f the fill of the voxel. V is a polynomial, so W is smooth everywhere: also a flat or inverted
+// tetrahedron (V ≤ 0) has a force, which turns it back. The idea of keeping tetrahedral volumes beside the
+// springs of a mass-spring system: Teschner, Heidelberger, Müller, Gross 2004, and Diziol, Bender, Bayer
+// 2009 for whole bodies. docs/theory/volume.md.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "muslin/lattice/lattice.hpp"
+#include "muslin/potential/potential.hpp"
+
+namespace muslin {
+
+class VolumeEnergy : public Potential {
+ public:
+  /// volume_modulus κ [N/m²] ≥ 0; the positions are the lattice's vertices.
+  VolumeEnergy(const Lattice& lattice, double volume_modulus);
+
+  double value(ConstVectors x) const override;
+  void add_gradient(ConstVectors x, Vectors g) const override;
+  void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override;
+  void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override;
+
+ private:
+  struct Cell {
+    std::array<int, 8> vertices;
+    double modulus = 0;  ///< κ f [N/m²]
+  };
+  template <class Kernel>
+  void for_each_cell(const Kernel& kernel) const;
+
+  double rest_volume_ = 0;  ///< of a tetrahedron [m³]
+  std::array<std::array<int, 4>, 6> corners_{};
+  /// By parity of the voxel's coordinates: cells of one colour share no vertex, so each colour can be
+  /// added in parallel, and every vertex sums its cells in the order of the colours.
+  std::array<std::vector<Cell>, 8> colours_;
+};
+
+}  // namespace muslin
