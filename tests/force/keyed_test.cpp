@@ -22,6 +22,16 @@ TEST(Keyed, LinearBetweenKeysConstantOutside) {
   EXPECT_EQ(keyed.at(9), Vec3(4, 8, 0));
 }
 
+TEST(Keyed, IntegralIsTheSumOfFineMidpoints) {
+  const Keyed keyed{{{-1, Vec3(2, 0, 0)}, {1, Vec3(4, 0, 1)}, {2.5, Vec3(-3, 8, 0)}}};
+  for (double end : {0.0, 0.4, 1.0, 2.0, 2.5, 4.0}) {
+    Vec3 sum = Vec3::Zero();
+    const int n = 4000;
+    for (int i = 0; i < n; ++i) sum += end / n * keyed.at((i + 0.5) * end / n);
+    EXPECT_LT((keyed.integral(end) - sum).norm(), 1e-5) << end;
+  }
+}
+
 TEST(Window, SharesOfAllStepsAddUpToItsLength) {
   const Window window{0.333, 1.777};
   for (double dt : {0.5, 0.1, 1.0 / 240, 3.0}) {

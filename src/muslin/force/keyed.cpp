@@ -16,6 +16,19 @@ Vec3 Keyed::at(double time) const {
   return a.value + (time - a.time) / (b.time - a.time) * (b.value - a.value);
 }
 
+Vec3 Keyed::integral(double time) const {
+  // The value is linear between consecutive nodes, so the trapezoidal rule is exact.
+  Vec3 sum = Vec3::Zero();
+  double begin = 0;
+  for (const Key& key : keys) {
+    if (key.time <= begin) continue;
+    if (key.time >= time) break;
+    sum += 0.5 * (key.time - begin) * (at(begin) + key.value);
+    begin = key.time;
+  }
+  return sum + 0.5 * (time - begin) * (at(begin) + at(time));
+}
+
 double Window::share(double begin, double end) const {
   const double length = end - begin;
   assert(length > 0);

@@ -16,6 +16,8 @@ struct Keyed {
   std::vector<Key> keys;  ///< at least one, times ascend strictly
 
   Vec3 at(double time) const;
+  /// ∫₀ᵗ at(s) ds for t ≥ 0, exactly: how far something carried by a keyed velocity has come.
+  Vec3 integral(double time) const;
 };
 
 /// The time during which a force acts, and how much of a step that is.

@@ -1,0 +1,54 @@
+// Air drag and lift on the faces of a surface that the vertices carry.
+//
+// Per triangle with area A, unit normal n and velocity v of the air relative to it:
+//
+//   drag  ½ C_D ρ v² A |n·v̂| v̂              along the relative wind, on the projected area A |n·v̂|
+//   lift  ½ C_L ρ v² A (n·v̂) (n − (n·v̂) v̂)  across it, in the plane of v and n
+//
+// n enters twice, so its sign does not matter. The lift direction is left unnormalised: the lift of a plate
+// goes with sin α cos α and vanishes when the wind blows square on it.
+//
+// Semi-implicit: n, A, |n·v| and |v| are those at the start of the step, v is that at its end. The force is
+// then −∂W/∂x of a convex quadratic, so any step length and any wind speed is stable. docs/theory/wind.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "muslin/force/keyed.hpp"
+#include "muslin/lattice/embedding.hpp"
+#include "muslin/potential/potential.hpp"
+
+namespace muslin {
+
+struct WindSettings {
+  Keyed velocity{{{0, Vec3::Zero()}}};  ///< mean velocity of the air [m/s]
+  Window window;                        ///< when it acts; outside, not even still air resists
+  double air_density = 1.2;             ///< ρ [kg/m³] ≥ 0
+  double drag = 1.17;                   ///< C_D ≥ 0; 1.17: a square plate, broadside
+  double lift = 0;                      ///< C_L, 0 … C_D: more would pull a face against the wind
+  /// true: an open sheet, each face counts whichever side the wind meets. false: a closed solid with outward
+  /// faces; only those that face the wind count, and C_D refers to the frontal area as in handbooks.
+  bool two_sided = true;
+  double gust = 0;         ///< root mean square of each component of the turbulence [m/s] ≥ 0
+  double gust_length = 1;  ///< size of its largest eddies [m] > 0
+  std::uint64_t seed = 1;  ///< decides the turbulence
+};
+
+class Wind : public Load {
+ public:
+  /// Blows on `triangles` (#T, indices of the embedding's points) carried by `vertex_count` vertices.
+  /// Errors: usage, if a setting is out of its range or not finite.
+  Wind(WindSettings settings, Embedding skin, std::vector<Vec3i> triangles, std::size_t vertex_count);
+  std::unique_ptr<Potential> potential(const StepContext& step) const override;
+
+  struct Faces;
+
+ private:
+  WindSettings settings_;
+  std::shared_ptr<const Faces> faces_;
+};
+
+}  // namespace muslin
