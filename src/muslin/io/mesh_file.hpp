@@ -3,20 +3,26 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "muslin/geometry/mesh.hpp"
 
 namespace muslin {
 
 /// Reads .obj, .ply, .stl, .gltf, .glb, .dae, .fbx; the content must fit the suffix. Positions in double,
-/// polygons, vertex order, texture seams and groups as in the file. Formats that store corners apart (STL,
-/// glTF, FBX, Collada) are welded by position, and `note` says so.
-/// Errors: file, if it cannot be read; input, with file and line where there is one, if it is malformed.
+/// polygons, vertex order, texture seams and groups as in the file. The mesh passes require_usable. Formats
+/// that store corners apart (STL, glTF, FBX, Collada) are welded by position, and `note` says so. Errors:
+/// file, if it cannot be read; input, with file and line where there is one, if it is malformed.
 struct MeshFile {
   Mesh mesh;
   std::string note;  ///< what the reader had to change, empty if nothing
 };
 MeshFile read_mesh(const std::filesystem::path& path);
+
+/// The same from memory. `suffix` with its dot names the format, `file` is for messages; buffers that a .gltf
+/// keeps in other files are looked for in `folder`, and refused if that is empty.
+MeshFile read_mesh_from(std::string_view bytes, const std::string& suffix, const std::string& file,
+                        const std::filesystem::path& folder = {});
 
 /// Writes .obj or .ply by suffix: same polygons, vertex order, texture coordinates (.obj), groups (.obj).
 /// Written to a temporary file and renamed, so that a full disk leaves no broken file. Errors: file.

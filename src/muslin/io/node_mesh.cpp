@@ -1,0 +1,80 @@
+#include "muslin/io/node_mesh.hpp"
+
+#include <algorithm>
+
+#include "muslin/core/error.hpp"
+#include "muslin/geometry/inspect.hpp"
+#include "muslin/io/groups.hpp"
+
+namespace muslin {
+namespace {
+
+// Far beyond any mesh that can be simulated; a small file that repeats a mesh many times ends here.
+constexpr std::size_t most_corners = std::size_t{1} << 28;
+
+}  // namespace
+
+void NodeMesh::begin_node(const std::string& name, const Eigen::Matrix4d& transform) {
+  if (!transform.allFinite()) refuse("the transform of node " + name + " is not finite");
+  transform_ = transform;
+  mirrored_ = transform.topLeftCorner<3, 3>().determinant() < 0;
+  welder_.start_anew();
+  mesh_.groups.push_back({name, {}, {}});
+}
+
+void NodeMesh::begin_part(std::size_t positions, std::size_t uvs) {
+  stored_ += positions;
+  if (stored_ > most_corners) refuse("the mesh is too large");
+  part_vertices_.clear();
+  part_vertices_.reserve(positions);
+  first_uv_ = mesh_.uvs.size();
+  part_uvs_ = uvs;
+}
+
+void NodeMesh::position(const Vec3& local) {
+  const Vec3 position = (transform_ * local.homogeneous()).head<3>();
+  if (!position.allFinite() || position.cwiseAbs().maxCoeff() > largest_coordinate)
+    refuse("a coordinate is not a number or is beyond 1e9 m");
+  part_vertices_.push_back(welder_.vertex(position));
+}
+
+void NodeMesh::uv(const Vec2& uv) {
+  if (!uv.allFinite()) refuse("a texture coordinate is not a number");
+  mesh_.uvs.push_back(uv);
+}
+
+void NodeMesh::face(std::span<const std::size_t> corners) {
+  if (mesh_.face_vertices.size() + corners.size() > most_corners) refuse("the mesh is too large");
+  if (mesh_.face_offsets.empty()) mesh_.face_offsets.push_back(0);
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const std::size_t corner = corners[mirrored_ ? corners.size() - 1 - c : c];
+    if (corner >= part_vertices_.size()) refuse("a face uses a vertex that does not exist");
+    mesh_.face_vertices.push_back(part_vertices_[corner]);
+    mesh_.corner_uvs.push_back(part_uvs_ > 0 ? static_cast<int>(first_uv_ + corner) : -1);
+  }
+  mesh_.groups.back().faces.push_back(static_cast<int>(mesh_.face_count()));
+  mesh_.face_offsets.push_back(static_cast<int>(mesh_.face_vertices.size()));
+}
+
+MeshFile NodeMesh::finish(const std::string& reason, const std::string& extra) {
+  if (mesh_.uvs.empty()) mesh_.corner_uvs.clear();
+  std::erase_if(mesh_.groups, [](const MeshGroup& group) { return group.faces.empty(); });
+  if (mesh_.groups.size() == 1) {
+    mesh_.name = mesh_.groups[0].name;
+    mesh_.groups.clear();
+  }
+  for (MeshGroup& group : mesh_.groups) {
+    group.name = one_word(group.name);
+    complete_group(mesh_, group);
+  }
+  std::string note = reason + ": " + std::to_string(stored_) +
+                     " stored vertices were welded by position into " +
+                     std::to_string(mesh_.positions.size()) + "." + extra;
+  return {std::move(mesh_), std::move(note)};
+}
+
+void NodeMesh::refuse(const std::string& problem) const {
+  throw Error(ErrorKind::input, Place{file_}, problem, "repair the mesh in the modeller and export it again");
+}
+
+}  // namespace muslin

@@ -1,0 +1,44 @@
+// One mesh out of the nodes of a scene, each with parts and a transform (glTF, FBX, Collada).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "muslin/io/mesh_file.hpp"
+#include "muslin/io/weld.hpp"
+
+namespace muslin {
+
+/// begin_node, then for each of its parts begin_part, all positions, all texture coordinates, all faces.
+/// Equal positions of one node become one vertex; texture coordinates stay with the corners. Errors: input,
+/// naming the file, at a position that cannot be used or a mesh that grows too large.
+class NodeMesh {
+ public:
+  explicit NodeMesh(std::string file) : file_(std::move(file)), welder_(mesh_.positions) {}
+
+  /// `transform` takes the node's coordinates to the scene's. If it mirrors, faces are turned around.
+  void begin_node(const std::string& name, const Eigen::Matrix4d& transform);
+  /// `uvs` is 0 or `positions`.
+  void begin_part(std::size_t positions, std::size_t uvs);
+  void position(const Vec3& local);
+  void uv(const Vec2& uv);
+  /// Indices into the positions of this part.
+  void face(std::span<const std::size_t> corners);
+
+  /// The mesh with one group per node if there are several, and a note that says what was done.
+  MeshFile finish(const std::string& reason, const std::string& extra);
+
+ private:
+  [[noreturn]] void refuse(const std::string& problem) const;
+
+  std::string file_;
+  Mesh mesh_;
+  Welder welder_;
+  Eigen::Matrix4d transform_ = Eigen::Matrix4d::Identity();
+  bool mirrored_ = false;
+  std::size_t first_uv_ = 0, part_uvs_ = 0, stored_ = 0;
+  std::vector<int> part_vertices_;  // the vertex of each position of the part
+};
+
+}  // namespace muslin

@@ -1,0 +1,28 @@
+// Joining the corners of formats that store each face, or each side of a seam, apart.
+#pragma once
+
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// Gives equal positions (bit for bit, except that −0 equals 0) one vertex, in order of first appearance.
+class Welder {
+ public:
+  /// Vertices are appended to `positions`; those already there are not joined with.
+  explicit Welder(std::vector<Vec3>& positions) : positions_(positions), slots_(64, -1) {}
+  /// The vertex at this position, which must be finite.
+  int vertex(const Vec3& position);
+  /// Later positions are not joined with earlier ones.
+  void start_anew();
+
+ private:
+  std::size_t slot(const Vec3& position) const;
+
+  std::vector<Vec3>& positions_;
+  std::vector<int> slots_;  // open addressing; −1 empty
+  std::size_t used_ = 0;
+};
+
+}  // namespace muslin
