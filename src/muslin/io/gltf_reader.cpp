@@ -1,21 +1,30 @@
 #include "muslin/io/gltf_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "muslin/core/error.hpp"
 #include "muslin/io/binary_reader.hpp"
 #include "muslin/io/file_bytes.hpp"
 #include "muslin/io/node_mesh.hpp"
 
-// Only what loads buffers: images are of no interest, and files are read by us.
+// Compiled here with hidden symbols, not linked: Debian's libdraco, which assimp brings along, exports
+// another version of the same classes, and the linker would mix the two. Images and files are of no interest
+// to it.
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+#define TINYGLTF_IMPLEMENTATION
+#define TINYGLTF_NO_INCLUDE_JSON
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #define TINYGLTF_NO_FS
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC visibility push(hidden)
 #include <tiny_gltf.h>
-#pragma GCC diagnostic pop
+#pragma GCC visibility pop
 
 namespace muslin {
 namespace {
