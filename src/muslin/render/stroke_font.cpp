@@ -101,6 +101,7 @@ const std::map<std::uint32_t, const char*> glyphs = {
     {0xb0, "o0g4g4c0c"},
     {0xb2, "~0e0g4g4d0a 0a4a"},
     {0xb3, "~0f0g4g4d2d ~2d4d4a0a0b"},
+    {0xb5, "000c ~0c047478 7c74"},
     {0xb7, "1a1b"},
     {0xd7, "177d 1d77"},
     {0x2013, "0a7a"},
