@@ -1,5 +1,6 @@
 // Implicit steps as minimisation: against a dense reference, on crumpled sheets, at the limit of double, with
 // moved and unreachable targets, and the same bits for any thread count.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -177,7 +178,71 @@ TEST(ImplicitEuler, AllHeldAndFreeFlightAreTrivial) {
   }
 }
 
-/// A potential that is not a number beyond x = limit.
+/// W = −p Σ log(height − y): infinite at the ceiling y = height, and no way around.
+class Ceiling : public Potential {
+ public:
+  explicit Ceiling(double height) : height_(height) {}
+  double value(ConstVectors x) const override {
+    double w = 0;
+    for (const Vec3& p : x) w -= p.y() < height_ ? std::log(height_ - p.y()) : -INFINITY;
+    return w;
+  }
+  void add_gradient(ConstVectors x, Vectors g) const override {
+    for (std::size_t v = 0; v < x.size(); ++v) g[v].y() += 1 / (height_ - x[v].y());
+  }
+  void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override {
+    for (std::size_t v = 0; v < x.size(); ++v) y[v].y() += p[v].y() / std::pow(height_ - x[v].y(), 2);
+  }
+  void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override {
+    for (std::size_t v = 0; v < x.size(); ++v) blocks[v](1, 1) += std::pow(height_ - x[v].y(), -2);
+  }
+  double max_step(ConstVectors x, ConstVectors d) const override {
+    double t = INFINITY;
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      if (d[v].y() > 0) t = std::min(t, (height_ - x[v].y()) / d[v].y());
+    }
+    return t;
+  }
+
+ private:
+  double height_;
+};
+
+TEST(ImplicitEuler, NeverStepsPastWhatAPotentialAllows) {
+  test::Flag flag;
+  const Ceiling ceiling(6.5);
+  test::expect_potential_is_sound(ceiling, flag.rest, 0.5);
+  flag.state.velocities.assign(flag.rest.size(), Vec3(0, 100, 0));
+  SolverSettings settings;
+  double highest = 0;
+  for (int n = 0; n < 10; ++n) {
+    StepProblem problem = flag.problem();
+    problem.potentials.push_back(&ceiling);
+    const StepContext context = step_context(settings.integrator, flag.state, 0.02);
+    const StepReport report = solve_step(settings, context, problem, flag.state);
+    ASSERT_TRUE(report.converged) << report.failure;
+    for (const Vec3& p : flag.state.positions) highest = std::max(highest, p.y());
+  }
+  EXPECT_LT(highest, 6.5);
+  EXPECT_GT(highest, 6.4) << "it did hit the ceiling";
+}
+
+TEST(ImplicitEuler, ATargetBeyondWhatAPotentialAllowsFailsWithAReason) {
+  test::Flag flag;
+  flag.hold_top_corners();
+  for (Vec3& target : flag.targets) target.y() += 1;
+  const Ceiling ceiling(6.5);
+  StepProblem problem = flag.problem();
+  problem.potentials.push_back(&ceiling);
+  const State before = flag.state;
+  const StepReport report =
+      solve_step({}, step_context(Integrator::implicit_euler, flag.state, 0.02), problem, flag.state);
+  EXPECT_FALSE(report.converged);
+  EXPECT_NE(report.failure.find("held vertices"), std::string::npos) << report.failure;
+  EXPECT_EQ(flag.state.positions, before.positions);
+}
+
+/// A potential that is never a number.
 class Cliff : public test::Wells {
  public:
   Cliff() : Wells(0) {}

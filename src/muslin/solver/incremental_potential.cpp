@@ -89,14 +89,14 @@ IncrementalPotential::Imbalance IncrementalPotential::imbalance(ConstVectors g) 
 
 double IncrementalPotential::rounding_floor(ConstVectors x, std::span<const Mat3> blocks) const {
   constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
-  double floor = 0;
+  double stiffest = 0;  // largest ‖block‖ / (m dt²) [1/s²]
+  double farthest = 0;  // largest coordinate [m]
   for (std::size_t v = 0; v < size(); ++v) {
-    if (held(v)) continue;
-    // Neighbours' couplings add up to no more than the diagonal block again.
-    const double carried = 2 * blocks[v].norm() * x[v].lpNorm<Eigen::Infinity>() * half_ulp;
-    floor = std::max(floor, carried / (problem_.masses[v] * dt_ * dt_));
+    farthest = std::max(farthest, x[v].lpNorm<Eigen::Infinity>());
+    if (!held(v)) stiffest = std::max(stiffest, blocks[v].norm() / (problem_.masses[v] * dt_ * dt_));
   }
-  return floor;
+  // Neighbours' couplings add up to no more than the diagonal block again.
+  return 2 * stiffest * farthest * half_ulp;
 }
 
 }  // namespace muslin
