@@ -12,6 +12,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
+#include "muslin/geometry/orientation.hpp"
 #include "muslin/lattice/connect.hpp"
 #include "muslin/lattice/fill.hpp"
 #include "muslin/lattice/rows.hpp"
@@ -84,28 +85,6 @@ VoxelKeys place_grid(const Box& bounds, const LatticeSettings& settings, const S
   return {bounds.center() - 0.5 * w * extent.cast<double>(), w, extent};
 }
 
-/// True if every edge is used as often in one direction as in the other: the winding number is then the same
-/// on either side of any path that does not meet the surface.
-bool is_watertight(const Triangulation& triangulation) {
-  std::vector<std::pair<std::uint64_t, int>> edges;
-  edges.reserve(3 * triangulation.triangles.size());
-  for (const Vec3i& t : triangulation.triangles) {
-    for (int c = 0; c < 3; ++c) {
-      const auto a = static_cast<std::uint64_t>(t[c]), b = static_cast<std::uint64_t>(t[(c + 1) % 3]);
-      edges.push_back(a < b ? std::pair(a << 32 | b, 1) : std::pair(b << 32 | a, -1));
-    }
-  }
-  tbb::parallel_sort(edges.begin(), edges.end());
-  for (std::size_t begin = 0; begin < edges.size();) {
-    int sum = 0;
-    std::size_t end = begin;
-    for (; end < edges.size() && edges[end].first == edges[begin].first; ++end) sum += edges[end].second;
-    if (sum != 0) return false;
-    begin = end;
-  }
-  return true;
-}
-
 /// A voxel near the surface. `behind` is ∫ n_x dA over the surface in the voxels of its row with greater x:
 /// for a closed mesh the mean winding number over the voxel's upper face.
 struct Candidate {
@@ -136,8 +115,7 @@ std::vector<SurfaceVoxel> widen(std::vector<SurfaceVoxel> voxels, const VoxelKey
   return voxels;
 }
 
-std::vector<Candidate> candidates_of(const std::vector<SurfaceVoxel>& voxels, const VoxelKeys& grid,
-                                     double orientation) {
+std::vector<Candidate> candidates_of(const std::vector<SurfaceVoxel>& voxels, const VoxelKeys& grid) {
   std::vector<Candidate> candidates(voxels.size());
   double behind = 0;
   for (std::size_t v = voxels.size(); v-- > 0;) {
@@ -149,8 +127,8 @@ std::vector<Candidate> candidates_of(const std::vector<SurfaceVoxel>& voxels, co
       if (next.y() != candidate.voxel.y() || next.z() != candidate.voxel.z()) behind = 0;
     }
     candidate.behind = behind;
-    candidate.fill = behind + orientation * voxels[v].moment;
-    behind += orientation * voxels[v].area;
+    candidate.fill = behind + voxels[v].moment;
+    behind += voxels[v].area;
   }
   return candidates;
 }
@@ -343,28 +321,29 @@ Lattice build_lattice(const Mesh& mesh, const SignedDistance& distance, const La
                       const Progress& progress) {
   require_settings(settings);
   progress.at(0, "lattice");
-  const Triangulation triangulation = triangulate(mesh);
+  Triangulation triangulation = triangulate(mesh);
+  OrientedTriangles oriented = orient(mesh.positions, triangulation.triangles);
+  triangulation.triangles = std::move(oriented.triangles);
   const Size size = measure(mesh, triangulation);
   const VoxelKeys grid = place_grid(mesh.bounds(), settings, size);
-  const bool watertight = is_watertight(triangulation);
 
   auto surface = cut_surface(mesh, triangulation, grid, progress);
   if (settings.rule == VoxelRule::threshold) {
     const double reach = std::ceil(std::abs(settings.threshold) - 0.5 - 1e-6);
     if (reach > 0) surface = widen(std::move(surface), grid, static_cast<int>(reach));
   }
-  std::vector<Candidate> candidates = candidates_of(surface, grid, size.volume < 0 ? -1 : 1);
+  std::vector<Candidate> candidates = candidates_of(surface, grid);
   surface = {};
 
   const Builder builder(distance, grid, settings, progress);
   builder.decide(candidates);
-  if (!watertight || !is_simple(candidates)) builder.sample_fills(candidates);
+  if (!oriented.watertight || !is_simple(candidates)) builder.sample_fills(candidates);
 
   Lattice lattice;
   lattice.origin = grid.origin;
   lattice.width = grid.width;
   lattice.extent = grid.extent;
-  if (watertight) {
+  if (oriented.watertight) {
     builder.fill_rows(candidates, lattice);
   } else {
     builder.flood(candidates, lattice);

@@ -1,6 +1,7 @@
 // The contour: marching squares or cubes on the lattice's samples of the distance field. The samples' values
 // never change, only their positions, so the topology is built once and every vertex is carried by the
 // lattice (Embedding). Closed, also where the solid ends exactly on the lattice's boundary.
+// Source: Lorensen and Cline, Marching Cubes, 1987; tables and rules in docs/theory/contour.md.
 #pragma once
 
 #include <span>
@@ -21,10 +22,20 @@ struct Contour {
   ContourMethod method = ContourMethod::cubes;
   Mesh mesh;            ///< triangles at rest, outward oriented, closed
   Embedding embedding;  ///< of mesh.positions
-  double distance = 0;  ///< largest distance from a contour vertex or face centre to the solid's surface [m]
+  /// Largest distance between the contour and the solid's surface at rest [m]: from the contour's vertices
+  /// and face centres to the surface, and from the solid's vertices to the contour, whichever is farther. The
+  /// diagonal of the solid's bounding box if the contour is empty.
+  double distance = 0;
 };
 
-/// `solid` is the closed mesh the lattice was built from.
+/// `solid` is the closed mesh the lattice was built from, `distance` its field. The mesh is a closed
+/// 2-manifold, each edge run once in either direction.
+///
+/// Cubes: features with no lattice vertex inside are lost, above all walls thinner than a voxel; the mesh is
+/// empty if that is all there is. Squares: the outline in the middle of the solid's thickness, extruded to
+/// its bounds; thin along the axis of the lattice's smallest extent, which must be one voxel. In either,
+/// what passes between samples shows in `Contour::distance`.
+/// Errors: input, if squares are asked of a lattice thicker than one voxel.
 Contour build_contour(const Lattice& lattice, const Mesh& solid, const SignedDistance& distance,
                       ContourMethod method);
 

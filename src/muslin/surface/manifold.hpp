@@ -1,0 +1,30 @@
+// Making a closed surface a manifold: where two sheets of it meet in an edge or a vertex, the edge or vertex
+// is doubled, so that every edge has exactly two triangles and every vertex one fan.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// A triangle and where it comes from. Where more than two triangles meet in an edge, those of the same part
+/// belong together, then those of the same cell (part / 8).
+struct PartTriangle {
+  std::array<int, 3> vertices{};
+  std::int64_t part = 0;
+};
+
+struct Manifold {
+  std::vector<Vec3i> triangles;
+  /// #V the vertices of the input that each vertex is the mean of: twice the same but for a vertex put into
+  /// the middle of an edge.
+  std::vector<std::array<int, 2>> sources;
+};
+
+/// `triangles` must be closed: each edge is run as often one way as the other.
+Manifold make_manifold(const std::vector<PartTriangle>& triangles);
+
+}  // namespace muslin
