@@ -1,30 +1,46 @@
 #include "muslin/geometry/closest_point.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include <embree3/rtcore.h>
+#include <Eigen/Eigenvalues>
+#include <tbb/parallel_invoke.h>
 
 #include "muslin/core/error.hpp"
 
 namespace muslin {
 namespace {
 
+constexpr int leaf_size = 4;
+constexpr int parallel_leaves = 512;
+
 // Below this squared sine of the angle between two edges the signs of the barycentric coordinates are not
 // trusted, and every edge is tried.
 constexpr double thin_sine_squared = 1e-8;
 
-// Unit of the last place of a float between 1 and 2.
-constexpr double float_ulp = std::numeric_limits<float>::epsilon();
-
-// Squares of coordinates beyond this would come near the largest float.
-constexpr double farthest_scaled_coordinate = 1e15;
+// Boxes are this share larger and nearer than computed, so that rounding never hides a triangle.
+constexpr double slack = 1e-13;
 
 struct Triangle {
   Vec3 a, ab, ac;
+  int index;
   bool thin;
+};
+
+struct Node {
+  Vec3 centre;
+  Mat3 axes;  // its rows
+  Vec3 half;  // extent on either side of the centre, along the axes
+  int begin = 0, end = 0;
+  int right = 0;  // second child; the first follows this node; 0 for a leaf
+
+  double squared_distance(const Vec3& point) const {
+    const Vec3 local = axes * (point - centre);
+    return (local.cwiseAbs() - half).cwiseMax(0).squaredNorm() * (1 - slack);
+  }
 };
 
 struct Candidate {
@@ -34,8 +50,8 @@ struct Candidate {
   int triangle = -1;
 };
 
-Triangle make_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  Triangle triangle{a, b - a, c - a, false};
+Triangle make_triangle(const Vec3& a, const Vec3& b, const Vec3& c, int index) {
+  Triangle triangle{a, b - a, c - a, index, false};
   const double area = triangle.ab.cross(triangle.ac).squaredNorm();
   triangle.thin = !(area > thin_sine_squared * triangle.ab.squaredNorm() * triangle.ac.squaredNorm());
   return triangle;
@@ -87,86 +103,123 @@ Candidate nearest_on(const Triangle& triangle, const Vec3& point) {
 }  // namespace
 
 struct ClosestPointQuery::Tree {
-  std::vector<Triangle> triangles;
-  Vec3 centre = Vec3::Zero();
-  double scale = 1;  // a power of two: the mesh lies within [−1, 1]³ in the hierarchy's coordinates
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
+  std::vector<Triangle> triangles;  // in the order of the leaves
+  std::vector<int> places;          // where each triangle, as the caller counts, went
+  std::vector<Node> nodes;
 
-  Tree() = default;
-  Tree(const Tree&) = delete;
-  Tree& operator=(const Tree&) = delete;
-  ~Tree() {
-    if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
-  }
+  void build(int node, int leaves, int begin, int end);
+  void fit_box(Node& node, int begin, int end) const;
 
-  void build();
-  void try_triangle(int index, const Vec3& point, Candidate& best) const {
-    Candidate candidate = nearest_on(triangles[static_cast<std::size_t>(index)], point);
+  static void try_triangle(const Triangle& triangle, const Vec3& point, Candidate& best) {
+    Candidate candidate = nearest_on(triangle, point);
     if (candidate.squared_distance > best.squared_distance) return;
-    if (candidate.squared_distance == best.squared_distance && best.triangle >= 0 && best.triangle <= index)
+    if (candidate.squared_distance == best.squared_distance && best.triangle >= 0 &&
+        best.triangle <= triangle.index)
       return;
-    candidate.triangle = index;
+    candidate.triangle = triangle.index;
     best = candidate;
   }
+  void search(const Vec3& point, Candidate& best) const;
 };
 
-namespace {
-
-void triangle_bounds(const RTCBoundsFunctionArguments* arguments) {
-  const auto& boxes = *static_cast<const std::vector<RTCBounds>*>(arguments->geometryUserPtr);
-  *arguments->bounds_o = boxes[arguments->primID];
+// Along the principal axes of the corners; the last axis is the longest.
+void ClosestPointQuery::Tree::fit_box(Node& node, int begin, int end) const {
+  const std::span<const Triangle> patch(triangles.data() + begin, static_cast<std::size_t>(end - begin));
+  const auto for_each_corner = [&](const auto& visit) {
+    for (const Triangle& triangle : patch) {
+      visit(triangle.a);
+      visit(triangle.a + triangle.ab);
+      visit(triangle.a + triangle.ac);
+    }
+  };
+  const Vec3 origin = patch.front().a;
+  Vec3 mean = Vec3::Zero();
+  for_each_corner([&](const Vec3& p) { mean += p - origin; });
+  mean /= 3.0 * static_cast<double>(patch.size());
+  Mat3 covariance = Mat3::Zero();
+  for_each_corner([&](const Vec3& p) {
+    const Vec3 d = p - origin - mean;
+    covariance += d * d.transpose();
+  });
+  node.axes = Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors().transpose();
+  Box box;
+  for_each_corner([&](const Vec3& p) { box.extend(node.axes * (p - origin)); });
+  node.centre = origin + node.axes.transpose() * box.center();
+  node.half.setZero();
+  for_each_corner(
+      [&](const Vec3& p) { node.half = node.half.cwiseMax((node.axes * (p - node.centre)).cwiseAbs()); });
+  node.half.array() += slack * node.half.norm();
 }
 
-}  // namespace
-
-void ClosestPointQuery::Tree::build() {
-  Box bounds;
-  for (const Triangle& triangle : triangles) {
-    bounds.extend(triangle.a);
-    bounds.extend(triangle.a + triangle.ab);
-    bounds.extend(triangle.a + triangle.ac);
+// A subtree of L leaves takes 2L − 1 nodes, and all its leaves but the last are full: where everything goes
+// is known beforehand, so both halves can be built at once.
+void ClosestPointQuery::Tree::build(int index, int leaves, int begin, int end) {
+  Node& node = nodes[static_cast<std::size_t>(index)];
+  node.begin = begin;
+  node.end = end;
+  fit_box(node, begin, end);
+  if (leaves == 1) return;
+  const Vec3 axis = node.axes.row(2).transpose();
+  const int left_leaves = leaves / 2;
+  const int middle = begin + left_leaves * leaf_size;
+  const auto along = [&](const Triangle& t) { return axis.dot(3 * t.a + t.ab + t.ac); };
+  std::nth_element(triangles.begin() + begin, triangles.begin() + middle, triangles.begin() + end,
+                   [&](const Triangle& s, const Triangle& t) {
+                     const double x = along(s), y = along(t);
+                     return x != y ? x < y : s.index < t.index;
+                   });
+  node.right = index + 2 * left_leaves;
+  const auto build_left = [&] { build(index + 1, left_leaves, begin, middle); };
+  const auto build_right = [&] { build(node.right, leaves - left_leaves, middle, end); };
+  if (leaves > parallel_leaves) {
+    tbb::parallel_invoke(build_left, build_right);
+  } else {
+    build_left();
+    build_right();
   }
-  centre = bounds.center();
-  const double half = 0.5 * bounds.sizes().maxCoeff();
-  if (half > std::numeric_limits<double>::min()) scale = std::exp2(-std::ceil(std::log2(half)));
+}
 
-  std::vector<RTCBounds> boxes(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Vec3 a = triangles[t].a - centre;
-    const Vec3 b = a + triangles[t].ab, c = a + triangles[t].ac;
-    const Eigen::Vector3f low = (scale * a.cwiseMin(b).cwiseMin(c)).cast<float>();
-    const Eigen::Vector3f high = (scale * a.cwiseMax(b).cwiseMax(c)).cast<float>();
-    boxes[t] = {low.x(), low.y(), low.z(), 0, high.x(), high.y(), high.z(), 0};
+void ClosestPointQuery::Tree::search(const Vec3& point, Candidate& best) const {
+  struct Waiting {
+    int node;
+    double squared_distance;
+  };
+  std::array<Waiting, 64> stack;
+  int depth = 0;
+  stack[depth++] = {0, nodes[0].squared_distance(point)};
+  while (depth > 0) {
+    const Waiting next = stack[--depth];
+    if (next.squared_distance > best.squared_distance) continue;
+    const Node& node = nodes[static_cast<std::size_t>(next.node)];
+    if (node.right == 0) {
+      for (int t = node.begin; t < node.end; ++t)
+        try_triangle(triangles[static_cast<std::size_t>(t)], point, best);
+      continue;
+    }
+    Waiting near{next.node + 1, nodes[static_cast<std::size_t>(next.node) + 1].squared_distance(point)};
+    Waiting far{node.right, nodes[static_cast<std::size_t>(node.right)].squared_distance(point)};
+    if (far.squared_distance < near.squared_distance) std::swap(near, far);
+    if (!(far.squared_distance > best.squared_distance)) stack[depth++] = far;
+    if (!(near.squared_distance > best.squared_distance)) stack[depth++] = near;
   }
-
-  // No "threads=" here: it would limit TBB for the whole process.
-  device = rtcNewDevice(nullptr);
-  scene = rtcNewScene(device);
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(triangles.size()));
-  rtcSetGeometryUserData(geometry, &boxes);
-  rtcSetGeometryBoundsFunction(geometry, triangle_bounds, nullptr);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene);
-  if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-    throw Error(ErrorKind::solver,
-                "the search tree over " + std::to_string(triangles.size()) +
-                    " triangles could not be built (Embree error " + std::to_string(error) + ")",
-                "free memory or simplify the mesh");
 }
 
 ClosestPointQuery::ClosestPointQuery(ConstVectors positions, std::span<const Vec3i> triangles)
     : tree_(std::make_unique<Tree>()) {
-  tree_->triangles.reserve(triangles.size());
+  Tree& tree = *tree_;
+  tree.triangles.reserve(triangles.size());
   for (const Vec3i& t : triangles)
-    tree_->triangles.push_back(make_triangle(positions[static_cast<std::size_t>(t.x())],
-                                             positions[static_cast<std::size_t>(t.y())],
-                                             positions[static_cast<std::size_t>(t.z())]));
-  if (!triangles.empty()) tree_->build();
+    tree.triangles.push_back(
+        make_triangle(positions[static_cast<std::size_t>(t.x())], positions[static_cast<std::size_t>(t.y())],
+                      positions[static_cast<std::size_t>(t.z())], static_cast<int>(tree.triangles.size())));
+  if (triangles.empty()) return;
+  const int count = static_cast<int>(triangles.size());
+  const int leaves = (count + leaf_size - 1) / leaf_size;
+  tree.nodes.resize(static_cast<std::size_t>(2 * leaves - 1));
+  tree.build(0, leaves, 0, count);
+  tree.places.resize(triangles.size());
+  for (int place = 0; place < count; ++place)
+    tree.places[static_cast<std::size_t>(tree.triangles[static_cast<std::size_t>(place)].index)] = place;
 }
 
 ClosestPointQuery::~ClosestPointQuery() = default;
@@ -177,45 +230,16 @@ ClosestPoint ClosestPointQuery::operator()(const Vec3& point, double max_distanc
   if (!point.allFinite())
     throw Error(ErrorKind::usage, "the distance of a point that is not finite was asked for",
                 "check the coordinates");
-  const Tree& tree = *tree_;
-  const Vec3 scaled = tree.scale * (point - tree.centre);
-  const double largest = std::max(1.0, scaled.cwiseAbs().maxCoeff());
-
-  struct Search {
-    const Tree& tree;
-    const Vec3& point;
-    double margin;  // what rounding to float may hide: the boxes', the point's and the box distance's error
-    Candidate best;
-
-    float radius() const {
-      const double exact = tree.scale * std::sqrt(best.squared_distance);
-      return static_cast<float>(exact * (1 + 4 * float_ulp) + margin);
+  Candidate best;
+  best.squared_distance = max_distance * max_distance;
+  if (!tree_->nodes.empty()) {
+    if (hint >= 0) {
+      const int place = tree_->places[static_cast<std::size_t>(hint)];
+      Tree::try_triangle(tree_->triangles[static_cast<std::size_t>(place)], point, best);
     }
-    static bool visit(RTCPointQueryFunctionArguments* arguments) {
-      auto& search = *static_cast<Search*>(arguments->userPtr);
-      const double before = search.best.squared_distance;
-      search.tree.try_triangle(static_cast<int>(arguments->primID), search.point, search.best);
-      if (!(search.best.squared_distance < before)) return false;
-      arguments->query->radius = search.radius();
-      return true;
-    }
-  } search{tree, point, 4 * float_ulp * largest, {}};
-
-  search.best.squared_distance = max_distance * max_distance;
-  if (hint >= 0) tree.try_triangle(hint, point, search.best);
-  if (largest > farthest_scaled_coordinate) {
-    for (std::size_t t = 0; t < tree.triangles.size(); ++t)
-      tree.try_triangle(static_cast<int>(t), point, search.best);
-  } else if (tree.scene) {
-    RTCPointQuery query{static_cast<float>(scaled.x()), static_cast<float>(scaled.y()),
-                        static_cast<float>(scaled.z()), 0, search.radius()};
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    rtcPointQuery(tree.scene, &query, &context, &Search::visit, &search);
+    tree_->search(point, best);
   }
-
   ClosestPoint closest;
-  const Candidate& best = search.best;
   if (best.triangle < 0) return closest;
   closest.triangle = best.triangle;
   closest.distance = best.difference.stableNorm();

@@ -1,7 +1,9 @@
 // The point of a triangle mesh nearest to a given point.
 //
-// A bounding volume hierarchy (Embree) finds the candidates in single precision with a safe margin; the
-// distances that decide are computed in double, as in Ericson, Real-Time Collision Detection (2005), §5.1.5.
+// A tree of boxes, each turned to fit the patch of surface in it (Gottschalk, Lin, Manocha, OBBTree, 1996):
+// they are as thin as the patch is flat, so that far fewer triangles are tried than with boxes along the
+// axes. The distance to one triangle is that of Ericson, Real-Time Collision Detection (2005), §5.1.5, made
+// safe for needles. All in double.
 #pragma once
 
 #include <limits>
@@ -19,8 +21,8 @@ struct ClosestPoint {
   Vec3 barycentric = Vec3::Zero();                            ///< weights of its corners, ≥ 0, sum 1
 };
 
-/// Reads from any number of threads. Answers depend on the mesh alone, not on how the hierarchy was built:
-/// among triangles at exactly the same distance the one of smallest index wins.
+/// Reads from any number of threads. Answers depend on the mesh alone, not on how the tree was built: among
+/// triangles at exactly the same distance the one of smallest index wins.
 class ClosestPointQuery {
  public:
   /// `triangles` (#T by 3) index `positions` (#V by 3), which must be finite. Zero-area triangles count as
