@@ -14,6 +14,5 @@ std::string gltf();                       ///< a square with a seam, twice, the 
 std::string glb();                        ///< the same
 std::string collada();                    ///< a square of 100 cm, z up
 std::string fbx();                        ///< a rectangle of 1 × 2 m, written by assimp
-std::string fbx_binary();                 ///< the same
 
 }  // namespace muslin::fixtures
