@@ -66,7 +66,8 @@ struct Raytracer::Parts {
   Hit surface_hit(const RTCRayHit& ray, const Vec3f& direction) const;
   Light lit(const Hit& hit, const Vec3f& to_eye, std::uint32_t sample) const;
   Light sky_light(const Hit& hit, std::uint32_t sample) const;
-  bool sees_sun(const Vec3f& origin, const Vec3f& direction) const;
+  /// The share of the sun's disc seen from a point, by four rays.
+  float visible_sun(const Vec3f& origin, std::uint32_t sample) const;
   Light background(float y) const;
 
   SceneView scene;
@@ -206,20 +207,30 @@ Light Raytracer::Parts::background(float y) const {
                               (background_bottom - background_top);
 }
 
-bool Raytracer::Parts::sees_sun(const Vec3f& origin, const Vec3f& direction) const {
-  RTCRay ray{};
-  ray.org_x = origin.x();
-  ray.org_y = origin.y();
-  ray.org_z = origin.z();
-  ray.dir_x = direction.x();
-  ray.dir_y = direction.y();
-  ray.dir_z = direction.z();
-  ray.tfar = infinity;
-  ray.mask = ~0u;
+float Raytracer::Parts::visible_sun(const Vec3f& origin, std::uint32_t sample) const {
+  Vec3f s, t;
+  sampling::basis(lighting.to_sun, s, t);
+  alignas(16) const int valid[4] = {-1, -1, -1, -1};
+  alignas(16) RTCRay4 rays{};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const Vec2f d = lighting.sun_spread * sampling::disc(sampling::sun_point(4 * sample + i));
+    const Vec3f direction = lighting.to_sun + d.x() * s + d.y() * t;
+    rays.org_x[i] = origin.x();
+    rays.org_y[i] = origin.y();
+    rays.org_z[i] = origin.z();
+    rays.dir_x[i] = direction.x();
+    rays.dir_y[i] = direction.y();
+    rays.dir_z[i] = direction.z();
+    rays.tfar[i] = infinity;
+    rays.mask[i] = ~0u;
+  }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(world, &context, &ray);
-  return ray.tfar >= 0;
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded4(valid, world, &context, &rays);
+  float visible = 0;
+  for (const float far : rays.tfar) visible += far < 0 ? 0.0f : 0.25f;
+  return visible;
 }
 
 Hit Raytracer::Parts::surface_hit(const RTCRayHit& ray, const Vec3f& direction) const {
@@ -342,23 +353,21 @@ Light Raytracer::Parts::lit(const Hit& hit, const Vec3f& to_eye, std::uint32_t s
   radiance += material.sheen * rim * sheen_colour.cwiseProduct(sky);
   if (material.gloss > 0) radiance += material.gloss * (0.04f + 0.5f * rim) * sky;
 
-  Vec3f s, t;
-  sampling::basis(lighting.to_sun, s, t);
-  const Vec2f d = lighting.sun_spread * sampling::disc(sampling::sun_point(sample));
-  const Vec3f to_sun = (lighting.to_sun + d.x() * s + d.y() * t).normalized();
+  const Vec3f& to_sun = lighting.to_sun;
   const float cosine = hit.normal.dot(to_sun);
   if (cosine > 0 && hit.geometric_normal.dot(to_sun) > -0.3f) {
-    if (sees_sun(hit.smooth_position + epsilon * hit.geometric_normal, to_sun)) {
+    const float visible = visible_sun(hit.smooth_position + epsilon * hit.geometric_normal, sample);
+    if (visible > 0) {
       const float diffuse = oren_nayar(material, hit.normal, to_sun, to_eye);
-      radiance += cosine *
+      radiance += visible * cosine *
                   lighting.sun.cwiseProduct((inverse_pi * diffuse) * hit.colour +
                                             Light::Constant(highlight(material, hit.normal, to_sun, to_eye)) +
                                             (0.35f * inverse_pi * material.sheen * rim) * sheen_colour);
     }
   } else if (hit.thin && cosine < 0) {
     const Vec3f behind = hit.position - (epsilon + 1.01f * hit.depth) * hit.geometric_normal;
-    if (sees_sun(behind, to_sun))
-      radiance += (-cosine * material.translucency * 2 * inverse_pi) * lighting.sun.cwiseProduct(hit.colour);
+    radiance += (-cosine * visible_sun(behind, sample) * material.translucency * 2 * inverse_pi) *
+                lighting.sun.cwiseProduct(hit.colour);
   }
   return radiance;
 }

@@ -14,7 +14,7 @@ namespace muslin {
 struct RenderOptions {
   int width = 1280;  ///< [pixels]
   int height = 720;  ///< [pixels]
-  int samples = 8;   ///< camera rays a pixel, each with one ray to the sun, 1…4096
+  int samples = 8;   ///< camera rays a pixel, each with four rays to the sun, 1…4096
   int sky_rays = 8;  ///< rays to the sky per camera ray, 1…1024
 };
 
