@@ -72,9 +72,10 @@ SpringModuli mixture(double s) { return {1 - s, s, s}; }
 
 }  // namespace
 
-StiffnessMatrix lattice_stiffness(const SpringModuli& moduli, Bracing bracing) {
+StiffnessMatrix lattice_stiffness(const SpringModuli& moduli, Bracing bracing, double volume_modulus) {
   const std::array<double, 3> modulus = {moduli.edge, moduli.face_diagonal, moduli.body_diagonal};
   StiffnessMatrix stiffness = StiffnessMatrix::Zero();
+  stiffness.topLeftCorner<3, 3>().setConstant(volume_modulus);
   for (const SpringDirection& direction : spring_directions(bracing)) {
     const Vec3 o = direction.offset.cast<double>();
     const Vec6 v = voigt_square(o);
@@ -87,8 +88,8 @@ double youngs_modulus(const StiffnessMatrix& stiffness, const Vec3& direction) {
   return Specimen(stiffness).pulled(direction).stiffness;
 }
 
-ElasticModuli elastic_moduli(const SpringModuli& moduli, Bracing bracing) {
-  const StiffnessMatrix stiffness = lattice_stiffness(moduli, bracing);
+ElasticModuli elastic_moduli(const SpringModuli& moduli, Bracing bracing, double volume_modulus) {
+  const StiffnessMatrix stiffness = lattice_stiffness(moduli, bracing, volume_modulus);
   const Specimen specimen(stiffness);
   const Response pull = specimen.pulled(Vec3::UnitX());
   ElasticModuli result;

@@ -28,8 +28,8 @@ struct SpringModuli {
 /// Voigt's order xx, yy, zz, yz, xz, xy; shear strains are γ = 2ε.
 using StiffnessMatrix = Eigen::Matrix<double, 6, 6>;
 
-/// σ = C ε of a block of lattice [N/m²].
-StiffnessMatrix lattice_stiffness(const SpringModuli& moduli, Bracing bracing);
+/// σ = C ε of a block of lattice [N/m²]. Volume conservation adds its modulus to the bulk modulus.
+StiffnessMatrix lattice_stiffness(const SpringModuli& moduli, Bracing bracing, double volume_modulus = 0);
 
 /// What a test specimen cut along the lattice's axes would show. The three axes are alike.
 struct ElasticModuli {
@@ -39,7 +39,7 @@ struct ElasticModuli {
   double youngs_least = 0, youngs_greatest = 0;  ///< over all directions of pull [N/m²]
   double youngs_mean = 0;                        ///< of a polycrystal of such blocks (Hill 1952) [N/m²]
 };
-ElasticModuli elastic_moduli(const SpringModuli& moduli, Bracing bracing);
+ElasticModuli elastic_moduli(const SpringModuli& moduli, Bracing bracing, double volume_modulus = 0);
 
 /// Young's modulus of a pull along the unit vector `direction` [N/m²].
 double youngs_modulus(const StiffnessMatrix& stiffness, const Vec3& direction);
@@ -47,8 +47,8 @@ double youngs_modulus(const StiffnessMatrix& stiffness, const Vec3& direction);
 /// Springs of which a block has this Young's and shear modulus along its axes [N/m²]; face and body
 /// diagonals get the same modulus. Without a shear modulus it is 0.4 × Young's, which makes full bracing
 /// isotropic with Poisson's ratio ¼; Poisson's ratio cannot be chosen apart (springs pull along their
-/// length: C12 = C44, Cauchy's relation). Errors: input, unless Young's modulus is positive and the shear
-/// modulus ≥ 0 and below greatest_shear_ratio × Young's.
+/// length: C12 = C44, Cauchy's relation), except by a volume modulus. Errors: input, unless Young's modulus
+/// is positive and the shear modulus ≥ 0 and below greatest_shear_ratio × Young's.
 SpringModuli springs_for(double youngs, std::optional<double> shear, Bracing bracing);
 
 /// The shear modulus that springs_for can reach is less than this times Young's modulus.
