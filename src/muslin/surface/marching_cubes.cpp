@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "muslin/core/parallel.hpp"
@@ -17,6 +18,8 @@ std::vector<double> sample_vertices(const Lattice& lattice, const SignedDistance
   std::vector<double> values(lattice.vertex_count());
   const RowIndex rows(lattice.vertices);
   const double needed = 1.01 * lattice.width;
+  // Looking farther costs more than it saves: deep in a ball all of the surface is about equally near.
+  const double reach = 16 * lattice.width;
   parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       int known = -1;  // the last vertex that was looked up
@@ -29,7 +32,9 @@ std::vector<double> sample_vertices(const Lattice& lattice, const SignedDistance
             continue;
           }
         }
-        values[v] = distance(lattice.rest_position(v));
+        const Vec3 position = lattice.rest_position(v);
+        const double magnitude = std::min(distance.nearest(position, reach).distance, reach);
+        values[v] = magnitude > 0 && distance.inside(position) ? -magnitude : magnitude;
         known = v;
       }
     }
