@@ -10,6 +10,7 @@
 
 #include "muslin/constraint/pin.hpp"
 #include "muslin/core/progress.hpp"
+#include "muslin/geometry/inspect.hpp"
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/lattice/embedding.hpp"
 #include "muslin/lattice/lattice.hpp"
@@ -26,12 +27,17 @@ struct BodyStatistics {
   double mass = 0;                        ///< [kg]
   double coverage = 1;                    ///< share of the mesh's area inside kept voxels
   double contour_distance = 0;            ///< largest distance of the rest contour from the solid [m]
+  double stable_step = 0;  ///< below this symplectic_euler is stable at rest [s]; infinity without springs
 };
 
 struct Body {
   std::string name;
-  Mesh mesh;   ///< the user's mesh, placed in the world; the skin's polygons, UVs and rest positions
-  Mesh solid;  ///< closed: the mesh itself, or the sheet with its thickness
+  Mesh mesh;  ///< the user's mesh, placed in the world; the skin's polygons, UVs and rest positions
+  Mesh
+      solid;  ///< what is filled with voxels: the mesh itself, faces outward, or the sheet with its thickness
+  MeshReport report;     ///< of mesh
+  bool sheet = false;    ///< the mesh is open or encloses nothing, so that it was given a thickness
+  double thickness = 0;  ///< of a sheet [m]
   Lattice lattice;
   Springs springs;
   Embedding skin;  ///< of mesh.positions

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "muslin/core/toml_table.hpp"
+#include "muslin/material/lattice_moduli.hpp"
 #include "muslin/material/material_table.hpp"
 #include "muslin/scene/names.hpp"
 #include "muslin/scene/vocabulary.hpp"
@@ -21,20 +24,51 @@ Material named_material(const std::string& name, const Place& place, const std::
   }
 }
 
-Material inline_material(const TomlTable& table, const std::filesystem::path& folder) {
+/// The three moduli from Young's modulus, and perhaps a shear modulus.
+void read_elastic_moduli(const TomlTable& table, Bracing bracing, Material& material) {
+  for (const char* key : {"edge_modulus", "face_diagonal_modulus", "body_diagonal_modulus"}) {
+    if (!table.has(key)) continue;
+    throw table.error(key, fmt::format("`{}` stands beside `youngs_modulus`, which decides it", key),
+                      "keep one of them");
+  }
+  const double youngs = table.number("youngs_modulus", "N/m²", {0, 1e15, true});
+  std::optional<double> shear;
+  if (table.has("shear_modulus")) {
+    const double greatest = greatest_shear_ratio(bracing) * youngs;
+    shear = table.number("shear_modulus", "N/m²", Range::non_negative());
+    if (*shear >= greatest) {
+      throw table.error("shear_modulus",
+                        fmt::format("springs reach a shear modulus of less than {:.4g} N/m² at this Young's "
+                                    "modulus",
+                                    greatest),
+                        "lower `shear_modulus` or leave it out");
+    }
+  }
+  const SpringModuli moduli = springs_for(youngs, shear, bracing);
+  material.edge_modulus = moduli.edge;
+  material.face_diagonal_modulus = moduli.face_diagonal;
+  material.body_diagonal_modulus = moduli.body_diagonal;
+}
+
+Material inline_material(const TomlTable& table, Bracing bracing, const std::filesystem::path& folder) {
   Material material;
   if (table.has("base")) {
     material = named_material(table.string("base"), table.place("base"), folder);
   } else {
     table.number("density", "kg/m³", Range::positive());
-    table.number("edge_modulus", "N/m²", Range::non_negative());
+    if (!table.has("youngs_modulus")) table.number("edge_modulus", "N/m²", Range::non_negative());
     material.name = "inline";
   }
   read_material_keys(table, material);
+  if (table.has("youngs_modulus")) {
+    read_elastic_moduli(table, bracing, material);
+  } else if (table.has("shear_modulus")) {
+    throw table.error("shear_modulus", "`shear_modulus` stands without `youngs_modulus`", "give both");
+  }
   return material;
 }
 
-Material read_body_material(const TomlTable& body, const std::filesystem::path& folder) {
+Material read_body_material(const TomlTable& body, Bracing bracing, const std::filesystem::path& folder) {
   const TomlValue* value = body.find("material");
   if (value == nullptr) {
     throw Error(ErrorKind::input, body.place(), body.title() + " has no `material`",
@@ -47,7 +81,7 @@ Material read_body_material(const TomlTable& body, const std::filesystem::path& 
   }
   refuse_reserved_keys(*value);
   return inline_material(TomlTable(*value, "`material` of " + body.title(), known_keys("body.material")),
-                         folder);
+                         bracing, folder);
 }
 
 Vec3 read_scale(const TomlTable& body) {
@@ -107,7 +141,7 @@ BodySettings read_body(const TomlValue& value, std::size_t index, const std::fil
   body.mass = static_cast<BodySettings::Mass>(table.choice("mass", mass_names(), 0));
   body.boundary_springs = static_cast<BodySettings::BoundarySprings>(
       table.choice("boundary_springs", boundary_spring_names(), 0));
-  body.material = read_body_material(table, folder);
+  body.material = read_body_material(table, body.bracing, folder);
   if (body.material.face_diagonal_modulus == 0 && body.material.body_diagonal_modulus == 0) {
     warnings.push_back(table.title() +
                        ": a material without stiffness along diagonals does not resist shear");

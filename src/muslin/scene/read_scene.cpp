@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -193,7 +194,10 @@ ForceSettings read_force(const TomlValue& value, std::size_t index, const Scene&
   if (force.type == ForceSettings::Type::wind) {
     force.air_density = table.number("air_density", "kg/m³", {0, 1e5, false}, force.air_density);
     force.drag = table.number("drag", "", {0, 1e3, false}, force.drag);
-    force.lift = table.number("lift", "", {0, 1e3, false}, force.lift);
+    force.lift = table.number("lift", "", {0, force.drag, false}, force.lift);
+    force.gust = table.number("gust", "m/s", {0, 1e4, false}, force.gust);
+    force.gust_length = table.number("gust_length", "m", {1e-6, 1e6, false}, force.gust_length);
+    force.seed = table.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), force.seed);
   }
   return force;
 }

@@ -97,6 +97,9 @@ Json force(const ForceSettings& f) {
     json["air_density"] = f.air_density;
     json["drag"] = f.drag;
     json["lift"] = f.lift;
+    json["gust"] = f.gust;
+    json["gust_length"] = f.gust_length;
+    json["seed"] = f.seed;
   }
   return json;
 }

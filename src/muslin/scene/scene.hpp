@@ -2,6 +2,7 @@
 // file, so that later errors can point at it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -94,7 +95,10 @@ struct ForceSettings {
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   double air_density = 1.2;                                          ///< wind [kg/m³]
   double drag = 1.17;                                                ///< wind, drag coefficient C_D
-  double lift = 0.0;                                                 ///< wind, lift coefficient C_L
+  double lift = 0.0;                                                 ///< wind, lift coefficient C_L ≤ C_D
+  double gust = 0.0;         ///< wind, root mean square of each component of the turbulence [m/s]
+  double gust_length = 1.0;  ///< wind, size of its largest eddies [m]
+  std::int64_t seed = 1;     ///< wind, decides the turbulence
   Place place;
 };
 

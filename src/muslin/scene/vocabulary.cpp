@@ -28,7 +28,7 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
       {"body",
        {"name", "mesh", "model", "thickness", "voxel_width", "voxels", "threshold", "bracing", "mass",
         "boundary_springs", "material", "translate", "rotate", "scale", "velocity"}},
-      {"body.material", with_materials({"base"})},
+      {"body.material", with_materials({"base", "youngs_modulus", "shear_modulus"})},
       {"where", {"group", "box", "sphere", "plane", "line", "nearest"}},
       {"where.sphere", {"center", "radius"}},
       {"where.plane", {"point", "normal", "distance"}},
@@ -38,7 +38,8 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
       {"force.gravity", {"type", "name", "body", "acceleration", "keyframes", "from", "until"}},
       {"force.point", {"type", "name", "body", "where", "force", "keyframes", "from", "until"}},
       {"force.wind",
-       {"type", "name", "body", "velocity", "keyframes", "from", "until", "air_density", "drag", "lift"}},
+       {"type", "name", "body", "velocity", "keyframes", "from", "until", "air_density", "drag", "lift",
+        "gust", "gust_length", "seed"}},
       {"force.keyframes", {"time", "value"}},
       {"probe", {"name", "body", "at"}},
   };

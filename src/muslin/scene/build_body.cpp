@@ -1,0 +1,186 @@
+#include "muslin/scene/build_body.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/field/signed_distance.hpp"
+#include "muslin/geometry/thicken.hpp"
+#include "muslin/io/mesh_file.hpp"
+#include "muslin/scene/placement.hpp"
+#include "muslin/scene/solid.hpp"
+
+namespace muslin {
+namespace {
+
+// Above this the run is long and takes several GiB: worth a word before it starts.
+constexpr std::size_t many_voxels = 2'000'000;
+
+/// Errors of the mesh and of what is built from it, with the place in the scene and the mesh file.
+template <class Build>
+auto at_place(const Place& place, const std::string& file, const Build& build) -> decltype(build()) {
+  try {
+    return build();
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    std::string where = file;
+    if (error.place().line > 0) where += fmt::format(":{}", error.place().line);
+    if (error.place().line > 0 && error.place().column > 0) where += fmt::format(":{}", error.place().column);
+    throw Error(error.kind(), place, where + ": " + error.problem(), error.remedy());
+  }
+}
+
+class BodyBuilder {
+ public:
+  BodyBuilder(const Scene& scene, const BodySettings& settings, std::vector<std::string>& warnings)
+      : settings_(settings), file_(resolve_path(scene, settings.mesh)), warnings_(warnings) {}
+
+  Body build(const Progress& progress) {
+    body_.name = settings_.name;
+    progress.at(0.0, "mesh");
+    at_place(settings_.mesh_place, file_.string(), [&] { read(); });
+    make_solid();
+    at_place(settings_.place, file_.string(), [&] { fill(progress); });
+    return std::move(body_);
+  }
+
+ private:
+  void say(const std::string& sentence) {
+    warnings_.push_back(fmt::format("body {}: {}", settings_.name, sentence));
+  }
+
+  void read() {
+    MeshFile mesh_file = read_mesh(file_);
+    if (!mesh_file.note.empty()) say(mesh_file.note);
+    body_.mesh = std::move(mesh_file.mesh);
+    const auto place = placement(settings_.translate, settings_.rotate, settings_.scale);
+    for (Vec3& x : body_.mesh.positions) x = place * x;
+    require_usable(body_.mesh, file_.string());
+    body_.report = inspect(body_.mesh);
+    for (const std::string& warning : body_.report.warnings) say(warning);
+  }
+
+  void make_solid() {
+    MeshKind kind = kind_of(body_.mesh, body_.report);
+    if (kind == MeshKind::holed_solid && settings_.thickness) kind = MeshKind::sheet;
+    body_.sheet = kind == MeshKind::sheet;
+    if (body_.sheet) {
+      body_.thickness = settings_.thickness.value_or(settings_.lattice.width);
+      body_.solid = thicken(body_.mesh, body_.thickness);
+      if (!settings_.thickness) {
+        say(
+            fmt::format("the mesh is a sheet; its thickness is taken as one voxel width, {} m; set "
+                        "`thickness` to choose it",
+                        body_.thickness));
+      }
+      return;
+    }
+    if (settings_.thickness) say("the mesh is closed, so `thickness` has no effect");
+    if (kind == MeshKind::holed_solid) {
+      say(fmt::format(
+          "the mesh has {} open edges around small holes and is filled as a solid; set `thickness` "
+          "if it is meant as a shell",
+          body_.report.open_edges));
+    }
+    body_.solid = body_.report.volume < 0 ? flipped(body_.mesh) : body_.mesh;
+  }
+
+  void fill(const Progress& progress) {
+    progress.at(0.1, "distance field");
+    const SignedDistance distance(body_.solid);
+    progress.at(0.2, "voxels");
+    body_.lattice = build_lattice(body_.solid, distance, settings_.lattice, part_of(progress, 0.2, 0.7));
+    progress.at(0.7, "springs");
+    const std::vector<double> fill = body_.lattice.fill;
+    body_.lattice.fill = voxel_shares(body_, settings_);
+    body_.springs = build_springs(body_.lattice, settings_.bracing);
+    body_.lattice.fill = fill;
+    progress.at(0.8, "skin");
+    body_.skin = embed(body_.lattice, body_.mesh.positions);
+    progress.at(0.9, "contour");
+    const bool one_layer = body_.lattice.extent.minCoeff() == 1;
+    body_.contour = build_contour(body_.lattice, body_.solid, distance,
+                                  one_layer ? ContourMethod::squares : ContourMethod::cubes);
+    body_.vertex_count = static_cast<int>(body_.lattice.vertex_count());
+    count();
+    advise();
+  }
+
+  void count() {
+    BodyStatistics& s = body_.statistics;
+    s.vertices = static_cast<std::int64_t>(body_.lattice.vertex_count());
+    s.voxels = static_cast<std::int64_t>(body_.lattice.voxel_count());
+    s.tetrahedra = 6 * s.voxels;
+    s.springs = body_.springs.count_by_kind;
+    s.coverage = body_.lattice.coverage;
+    s.contour_distance = body_.contour.distance;
+  }
+
+  void advise() {
+    const double width = settings_.lattice.width;
+    if (body_.lattice.coverage < 1 - 1e-6) {
+      say(
+          fmt::format("{:.3g} % of its surface lies outside the voxels; use `voxels = \"cover\"` or a higher "
+                      "`threshold`",
+                      100 * (1 - body_.lattice.coverage)));
+    }
+    if (body_.sheet && body_.thickness > 4 * width) {
+      say(
+          fmt::format("the sheet is {:.3g} voxels thick; a larger `voxel_width` or a smaller `thickness` is "
+                      "cheaper",
+                      body_.thickness / width));
+    }
+    if (body_.lattice.voxel_count() > many_voxels) {
+      say(fmt::format("{} voxels take long and several GiB of memory; a larger `voxel_width` takes less",
+                      body_.lattice.voxel_count()));
+    }
+  }
+
+  static Progress part_of(const Progress& whole, double begin, double end) {
+    Progress part;
+    part.cancelled = whole.cancelled;
+    if (whole.report) {
+      part.report = [&whole, begin, end](double fraction, std::string_view stage) {
+        whole.report(begin + fraction * (end - begin), stage);
+      };
+    }
+    return part;
+  }
+
+  const BodySettings& settings_;
+  std::filesystem::path file_;
+  std::vector<std::string>& warnings_;
+  Body body_;
+};
+
+}  // namespace
+
+Body build_body(const Scene& scene, const BodySettings& settings, std::vector<std::string>& warnings,
+                const Progress& progress) {
+  return BodyBuilder(scene, settings, warnings).build(progress);
+}
+
+std::vector<double> voxel_shares(const Body& body, const BodySettings& settings) {
+  if (settings.mass == BodySettings::Mass::solid) return body.lattice.fill;
+  return std::vector<double>(body.lattice.voxel_count(), 1.0);
+}
+
+std::vector<double> lattice_masses(const Body& body, const BodySettings& settings) {
+  const Lattice& lattice = body.lattice;
+  const std::vector<double> shares = voxel_shares(body, settings);
+  const double corner = settings.material.density * lattice.width * lattice.width * lattice.width / 8;
+  std::vector<double> masses(lattice.vertex_count(), 0.0);
+  for (std::size_t c = 0; c < lattice.voxel_count(); ++c) {
+    for (const int v : lattice.voxel_vertices[c]) masses[static_cast<std::size_t>(v)] += corner * shares[c];
+  }
+  return masses;
+}
+
+std::vector<float> spring_weights(const Body& body, const BodySettings& settings) {
+  if (settings.boundary_springs == BodySettings::BoundarySprings::shared) return body.springs.share;
+  if (settings.mass == BodySettings::Mass::solid) return body.springs.mean_fill;
+  return {};
+}
+
+}  // namespace muslin

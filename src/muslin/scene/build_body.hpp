@@ -1,0 +1,26 @@
+// From the settings of a body to its mesh, solid, lattice, springs and surfaces.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "muslin/core/progress.hpp"
+#include "muslin/scene/model.hpp"
+
+namespace muslin {
+
+/// Everything of Body but its place among the vertices of the model and its statistics of mass and time.
+/// Appends to `warnings`. Errors: input and file, with the place in the scene and the mesh file.
+Body build_body(const Scene& scene, const BodySettings& settings, std::vector<std::string>& warnings,
+                const Progress& progress);
+
+/// How full each voxel counts: its fill, or 1 if the body weighs by cells.
+std::vector<double> voxel_shares(const Body& body, const BodySettings& settings);
+
+/// #V of the body: each voxel gives an eighth of density·share·width³ to each of its corners [kg].
+std::vector<double> lattice_masses(const Body& body, const BodySettings& settings);
+
+/// #springs: what each spring's constant is multiplied by; empty if that is 1 for all.
+std::vector<float> spring_weights(const Body& body, const BodySettings& settings);
+
+}  // namespace muslin

@@ -1,0 +1,16 @@
+// From pins, forces and probes of the scene to those of the model.
+#pragma once
+
+#include "muslin/scene/model.hpp"
+
+namespace muslin {
+
+/// Adds the elastic energies and dampings of every body, the forces, the pins and the probes of
+/// model.scene to `model`, whose bodies, rest positions and masses are there already, and fills in
+/// BodyStatistics::stable_step. Errors: input, with the place in the scene.
+void build_materials(Model& model);
+void build_forces(Model& model);
+void build_pins(Model& model);
+void build_probes(Model& model);
+
+}  // namespace muslin

@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+
+#include "muslin/energy/spring_energy.hpp"
+#include "muslin/energy/volume_energy.hpp"
+#include "muslin/potential/mass_damping.hpp"
+#include "muslin/potential/restricted.hpp"
+#include "muslin/scene/build_body.hpp"
+#include "muslin/scene/build_loads.hpp"
+
+namespace muslin {
+namespace {
+
+/// The largest eigenvalue of blocks[v] / masses[v] over all vertices [1/s²].
+double largest_ratio(const std::vector<Mat3>& blocks, std::span<const double> masses) {
+  double largest = 0;
+  for (std::size_t v = 0; v < blocks.size(); ++v) {
+    Eigen::SelfAdjointEigenSolver<Mat3> solver;
+    solver.computeDirect(blocks[v], Eigen::EigenvaluesOnly);
+    largest = std::max(largest, solver.eigenvalues().maxCoeff() / masses[v]);
+  }
+  return largest;
+}
+
+/// Elastic and damping terms of one body, in the vertices of the model.
+class BodyMaterial {
+ public:
+  BodyMaterial(Model& model, std::size_t index)
+      : model_(model), body_(model.bodies[index]), settings_(model.scene.bodies[index]) {}
+
+  void build() {
+    const Material& material = settings_.material;
+    const std::array moduli = {material.edge_modulus, material.face_diagonal_modulus,
+                               material.body_diagonal_modulus};
+    const auto springs = std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli,
+                                                        spring_weights(body_, settings_));
+    add("springs", springs);
+    add_stiffness(*springs, 2);
+    if (material.volume_modulus > 0) {
+      const auto volume = std::make_shared<VolumeEnergy>(with_shares(), material.volume_modulus);
+      add("volume", volume);
+      add_stiffness(*volume, 4);
+    }
+    if (material.stiffness_damping > 0) {
+      add("stiffness damping", std::make_shared<SpringDamping>(springs, material.stiffness_damping));
+    }
+    if (material.mass_damping > 0) {
+      const auto masses = body_masses();
+      add("mass damping", std::make_shared<MassDamping>(material.mass_damping,
+                                                        std::vector<double>(masses.begin(), masses.end())));
+    }
+    const double ratio = stiffness_.empty() ? 0 : largest_ratio(stiffness_, body_masses());
+    body_.statistics.stable_step = ratio > 0 ? 2 / std::sqrt(ratio) : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  std::span<const double> body_masses() const { return std::span(model_.masses).subspan(first(), count()); }
+  std::size_t first() const { return static_cast<std::size_t>(body_.first_vertex); }
+  std::size_t count() const { return static_cast<std::size_t>(body_.vertex_count); }
+  bool alone() const { return count() == model_.vertex_count(); }
+
+  Lattice with_shares() const {
+    Lattice lattice = body_.lattice;
+    lattice.fill = voxel_shares(body_, settings_);
+    return lattice;
+  }
+
+  void add(const std::string& name, std::shared_ptr<const Potential> potential) {
+    if (!alone()) potential = std::make_shared<RestrictedPotential>(potential, first(), count());
+    model_.potentials.push_back({body_.name + ": " + name, EnergyRole::elastic, std::move(potential)});
+  }
+  void add(const std::string& name, std::shared_ptr<const Load> load) {
+    if (!alone()) load = std::make_shared<RestrictedLoad>(load, first(), count());
+    model_.loads.push_back({body_.name + ": " + name, EnergyRole::dissipation, std::move(load)});
+  }
+
+  /// An element over n vertices stores ½ k (Σ aᵢ·dᵢ)² ≤ ½ k n Σ (aᵢ·dᵢ)²: its Hessian is at most n times
+  /// its diagonal blocks. So ω² ≤ n λ(block)/m, and symplectic Euler is stable below 2/ω.
+  void add_stiffness(const Potential& potential, double vertices_of_element) {
+    std::vector<Mat3> blocks(count(), Mat3::Zero());
+    const ConstVectors rest = ConstVectors(model_.rest_positions).subspan(first(), count());
+    potential.add_diagonal_blocks(rest, blocks);
+    if (stiffness_.empty()) stiffness_.assign(count(), Mat3::Zero());
+    for (std::size_t v = 0; v < blocks.size(); ++v) stiffness_[v] += vertices_of_element * blocks[v];
+  }
+
+  Model& model_;
+  Body& body_;
+  const BodySettings& settings_;
+  std::vector<Mat3> stiffness_;
+};
+
+}  // namespace
+
+void build_materials(Model& model) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) BodyMaterial(model, b).build();
+}
+
+}  // namespace muslin

@@ -1,0 +1,156 @@
+#include "muslin/scene/describe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "muslin/scene/names.hpp"
+
+namespace muslin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+/// Below this symplectic_euler is stable for every body [s].
+double stable_step(const Model& model) {
+  double step = std::numeric_limits<double>::infinity();
+  for (const Body& body : model.bodies) step = std::min(step, body.statistics.stable_step);
+  return step;
+}
+
+Json body_json(const Body& body, const BodySettings& settings) {
+  const BodyStatistics& s = body.statistics;
+  Json json;
+  json["mesh"] = settings.mesh;
+  json["kind"] = body.sheet ? "sheet" : "solid";
+  if (body.sheet) json["thickness"] = body.thickness;
+  json["voxel_width"] = body.lattice.width;
+  json["extent"] = {body.lattice.extent.x(), body.lattice.extent.y(), body.lattice.extent.z()};
+  json["material"] = settings.material.name;
+  json["vertices"] = s.vertices;
+  json["voxels"] = s.voxels;
+  json["tetrahedra"] = s.tetrahedra;
+  json["springs"] = {
+      {"edge", s.springs[0]}, {"face_diagonal", s.springs[1]}, {"body_diagonal", s.springs[2]}};
+  json["mass"] = s.mass;
+  json["coverage"] = s.coverage;
+  json["contour"] = body.contour.method == ContourMethod::squares ? "squares" : "cubes";
+  json["contour_distance"] = s.contour_distance;
+  json["stable_step"] = finite(s.stable_step);
+  return json;
+}
+
+std::string body_text(const Body& body, const BodySettings& settings) {
+  const BodyStatistics& s = body.statistics;
+  const Vec3i& n = body.lattice.extent;
+  const std::string kind = body.sheet ? fmt::format("sheet, {:.4g} m thick", body.thickness) : "solid";
+  std::string text =
+      fmt::format("body {}: {} ({} polygons, {})\n", body.name, settings.mesh, body.mesh.face_count(), kind);
+  text += fmt::format("  voxels      {} of {:.6g} m in {} x {} x {}, {:.4g} % of the surface covered\n",
+                      s.voxels, body.lattice.width, n.x(), n.y(), n.z(), 100 * s.coverage);
+  text += fmt::format("  lattice     {} vertices, {} tetrahedra\n", s.vertices, s.tetrahedra);
+  text += fmt::format("  springs     {} edge, {} face diagonal, {} body diagonal ({})\n", s.springs[0],
+                      s.springs[1], s.springs[2], name_of(bracing_names(), settings.bracing));
+  text += fmt::format("  mass        {:.6g} kg of {}\n", s.mass, settings.material.name);
+  text +=
+      fmt::format("  contour     marching {}, at most {:.3g} m from the mesh\n",
+                  body.contour.method == ContourMethod::squares ? "squares" : "cubes", s.contour_distance);
+  return text;
+}
+
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+std::string counted(std::size_t count, const std::string& one) { return counted(count, one, one + "s"); }
+
+}  // namespace
+
+std::string describe_json(const Model& model) {
+  const Scene& scene = model.scene;
+  Json json;
+  json["title"] = scene.title;
+  json["time"] = {{"duration", scene.time.duration},
+                  {"frames", scene.time.frames()},
+                  {"steps", std::int64_t{scene.time.frames()} * scene.time.steps_per_frame},
+                  {"step", scene.time.step()},
+                  {"stable_step", finite(stable_step(model))}};
+  json["integrator"] = name_of(integrator_names(), scene.solver.integrator);
+  json["bodies"] = Json::object();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    json["bodies"][model.bodies[b].name] = body_json(model.bodies[b], scene.bodies[b]);
+  }
+  json["pins"] = Json::array();
+  for (const Pin& pin : model.pins) {
+    json["pins"].push_back({{"name", pin.name}, {"vertices", pin.vertices.size()}});
+  }
+  json["forces"] = Json::array();
+  for (const ForceSettings& force : scene.forces) {
+    json["forces"].push_back({{"name", force.name}, {"type", name_of(force_type_names(), force.type)}});
+  }
+  json["probes"] = Json::array();
+  for (const Probe& probe : model.probes) json["probes"].push_back({{"name", probe.name}});
+  json["warnings"] = model.warnings;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string describe_text(const Model& model) {
+  const Scene& scene = model.scene;
+  const std::int64_t steps = std::int64_t{scene.time.frames()} * scene.time.steps_per_frame;
+  std::string text = scene.title + "\n";
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) text += body_text(model.bodies[b], scene.bodies[b]);
+  for (const Pin& pin : model.pins) {
+    text +=
+        fmt::format("pin {}: {}\n", pin.name, counted(pin.vertices.size(), "held vertex", "held vertices"));
+  }
+  text += counted(scene.forces.size(), "force") + ", " + counted(scene.probes.size(), "probe") + "\n";
+  text += fmt::format("{:.6g} s in {} frames, {} steps of {:.4g} s by {}", scene.time.duration,
+                      scene.time.frames(), steps, scene.time.step(),
+                      name_of(integrator_names(), scene.solver.integrator));
+  text += fmt::format(" (symplectic_euler would need steps below {:.3g} s)\n", stable_step(model));
+  for (const std::string& warning : model.warnings) text += "warning: " + warning + "\n";
+  return text;
+}
+
+std::string describe_json(const MeshReport& r, const std::string& file) {
+  Json json;
+  json["mesh"] = file;
+  json["vertices"] = r.vertices;
+  json["faces"] = r.faces;
+  json["triangles"] = r.triangles;
+  json["components"] = r.components;
+  json["open_edges"] = r.open_edges;
+  json["non_manifold_edges"] = r.non_manifold_edges;
+  json["flipped_edges"] = r.flipped_edges;
+  json["degenerate_faces"] = r.degenerate_faces;
+  json["duplicate_faces"] = r.duplicate_faces;
+  json["unused_vertices"] = r.unused_vertices;
+  json["area"] = r.area;
+  json["volume"] = r.volume;
+  json["closed"] = r.closed;
+  json["min"] = vector(r.bounds.min());
+  json["max"] = vector(r.bounds.max());
+  json["warnings"] = r.warnings;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string describe_text(const MeshReport& r, const std::string& file) {
+  const Vec3 size = r.bounds.sizes();
+  std::string text = file + "\n";
+  text +=
+      fmt::format("  {}, {} ({}), {}\n", counted(r.vertices, "vertex", "vertices"), counted(r.faces, "face"),
+                  counted(r.triangles, "triangle"), counted(r.components, "component"));
+  text +=
+      fmt::format("  size {:.6g} x {:.6g} x {:.6g} m, area {:.6g} m²", size.x(), size.y(), size.z(), r.area);
+  text += r.closed ? fmt::format(", closed, volume {:.6g} m³\n", r.volume)
+                   : fmt::format(", open along {}\n", counted(r.open_edges, "edge"));
+  for (const std::string& warning : r.warnings) text += "warning: " + warning + "\n";
+  return text;
+}
+
+}  // namespace muslin

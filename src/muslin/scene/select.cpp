@@ -1,0 +1,199 @@
+#include "muslin/scene/select.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "muslin/core/nearest_name.hpp"
+#include "muslin/core/parallel.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr double tolerance = 1e-6;  // in voxel widths
+constexpr std::size_t grain = 8192;
+
+double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double t = std::clamp((x - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (x - a - t * along).norm();
+}
+
+/// A shape of `where`: how far a point lies outside of it [m], 0 or less inside.
+struct Shape {
+  std::string name;
+  std::function<double(const Vec3&)> outside;
+};
+
+std::vector<Shape> shapes_of(const Selection& where, double width) {
+  std::vector<Shape> shapes;
+  if (where.box) {
+    const Box box(where.box->min, where.box->max);
+    shapes.push_back({"box", [box](const Vec3& x) { return box.exteriorDistance(x); }});
+  }
+  if (where.sphere) {
+    const auto sphere = *where.sphere;
+    shapes.push_back(
+        {"sphere", [sphere](const Vec3& x) { return (x - sphere.center).norm() - sphere.radius; }});
+  }
+  if (where.plane) {
+    const auto plane = *where.plane;
+    const double distance = plane.distance.value_or(width / 2);
+    shapes.push_back({"plane", [plane, distance](const Vec3& x) {
+                        return std::abs((x - plane.point).dot(plane.normal)) - distance;
+                      }});
+  }
+  if (where.line) {
+    const auto line = *where.line;
+    const double distance = line.distance.value_or(0.75 * width);
+    shapes.push_back({"line", [line, distance](const Vec3& x) {
+                        return distance_to_segment(x, line.a, line.b) - distance;
+                      }});
+  }
+  return shapes;
+}
+
+const MeshGroup& find_group(const Body& body, const Selection& where, const std::string& what) {
+  std::vector<std::string> names;
+  for (const MeshGroup& group : body.mesh.groups) {
+    if (group.name == *where.group) return group;
+    names.push_back(group.name);
+  }
+  if (names.empty()) {
+    throw Error(ErrorKind::input, where.place,
+                fmt::format("{}: the mesh of body `{}` has no groups", what, body.name),
+                "select by box, sphere, plane, line or nearest");
+  }
+  throw Error(ErrorKind::input, where.place,
+              fmt::format("{}: the mesh of body `{}` has no group `{}`", what, body.name, *where.group),
+              name_advice(*where.group, names));
+}
+
+/// Points of the group no farther apart than half a voxel width: its vertices, and samples of its faces.
+std::vector<Vec3> group_points(const Mesh& mesh, const MeshGroup& group, double width) {
+  std::vector<Vec3> points;
+  for (const int v : group.vertices) points.push_back(mesh.positions[static_cast<std::size_t>(v)]);
+  std::vector<std::uint8_t> member(mesh.face_count(), 0);
+  for (const int f : group.faces) member[static_cast<std::size_t>(f)] = 1;
+  const Triangulation cut = triangulate(mesh);
+  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
+    if (!member[static_cast<std::size_t>(cut.faces[t])]) continue;
+    const Vec3& a = mesh.positions[static_cast<std::size_t>(cut.triangles[t][0])];
+    const Vec3 u = mesh.positions[static_cast<std::size_t>(cut.triangles[t][1])] - a;
+    const Vec3 v = mesh.positions[static_cast<std::size_t>(cut.triangles[t][2])] - a;
+    const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
+    const int pieces = static_cast<int>(std::clamp(std::ceil(longest / (width / 2)), 1.0, 2000.0));
+    for (int i = 0; i <= pieces; ++i) {
+      for (int j = 0; i + j <= pieces; ++j) points.push_back(a + u * i / pieces + v * j / pieces);
+    }
+  }
+  return points;
+}
+
+class Selector {
+ public:
+  Selector(const Body& body, const Selection& where, const std::string& what)
+      : body_(body),
+        where_(where),
+        what_(what),
+        shapes_(shapes_of(where, body.lattice.width)),
+        slack_(tolerance * body.lattice.width),
+        kept_(body.lattice.vertex_count(), 1) {}
+
+  std::vector<int> select() {
+    if (where_.group) keep_group();
+    const std::vector<std::uint8_t> of_group = kept_;
+    parallel_for(kept_.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const Vec3 x = body_.lattice.rest_position(v);
+        for (const Shape& shape : shapes_) kept_[v] &= shape.outside(x) <= slack_;
+      }
+    });
+    if (std::find(kept_.begin(), kept_.end(), 1) == kept_.end()) fail(of_group);
+    if (!where_.nearest.empty()) keep_nearest();
+    std::vector<int> vertices;
+    for (std::size_t v = 0; v < kept_.size(); ++v) {
+      if (kept_[v]) vertices.push_back(static_cast<int>(v));
+    }
+    return vertices;
+  }
+
+ private:
+  void keep_group() {
+    const MeshGroup& group = find_group(body_, where_, what_);
+    const std::vector<Vec3> points = group_points(body_.mesh, group, body_.lattice.width);
+    const Embedding carriers = embed(body_.lattice, points);
+    std::fill(kept_.begin(), kept_.end(), 0);
+    for (std::size_t p = 0; p < carriers.size(); ++p) {
+      for (std::size_t s = 0; s < 8; ++s) {
+        if (std::abs(carriers.weights[p][s]) < tolerance) continue;
+        kept_[static_cast<std::size_t>(carriers.vertices[p][s])] = 1;
+      }
+    }
+    if (points.empty()) {
+      throw Error(ErrorKind::input, where_.place,
+                  fmt::format("{}: the group `{}` is empty", what_, group.name),
+                  "fill the group in the modeller or select by a shape");
+    }
+  }
+
+  void keep_nearest() {
+    std::vector<std::uint8_t> near(kept_.size(), 0);
+    for (const Vec3& point : where_.nearest) {
+      const double least = least_over(kept_, [&](const Vec3& x) { return (x - point).norm(); }).distance;
+      for (std::size_t v = 0; v < kept_.size(); ++v) {
+        if (kept_[v] && (body_.lattice.rest_position(v) - point).norm() <= least + slack_) near[v] = 1;
+      }
+    }
+    kept_ = std::move(near);
+  }
+
+  struct Least {
+    double distance = std::numeric_limits<double>::infinity();
+    std::size_t vertex = 0;
+    Least operator+(const Least& other) const { return other.distance < distance ? other : *this; }
+  };
+  template <class Distance>
+  Least least_over(const std::vector<std::uint8_t>& among, const Distance& distance) const {
+    return parallel_sum(among.size(), grain, Least{}, [&](std::size_t begin, std::size_t end) {
+      Least least;
+      for (std::size_t v = begin; v < end; ++v) {
+        if (among[v]) least = least + Least{distance(body_.lattice.rest_position(v)), v};
+      }
+      return least;
+    });
+  }
+
+  [[noreturn]] void fail(const std::vector<std::uint8_t>& among) const {
+    const Least least = least_over(among, [&](const Vec3& x) {
+      double worst = 0;
+      for (const Shape& shape : shapes_) worst = std::max(worst, shape.outside(x));
+      return worst;
+    });
+    std::string names;
+    for (const Shape& shape : shapes_) names += (names.empty() ? "`" : " and `") + shape.name + "`";
+    const Vec3 x = body_.lattice.rest_position(least.vertex);
+    throw Error(ErrorKind::input, where_.place,
+                fmt::format("{}: no vertex of body `{}` lies within {}", what_, body_.name, names),
+                fmt::format("the nearest is [{:.6g}, {:.6g}, {:.6g}], {:.3g} m outside", x.x(), x.y(), x.z(),
+                            least.distance));
+  }
+
+  const Body& body_;
+  const Selection& where_;
+  const std::string& what_;
+  std::vector<Shape> shapes_;
+  double slack_;
+  std::vector<std::uint8_t> kept_;
+};
+
+}  // namespace
+
+std::vector<int> select_vertices(const Body& body, const Selection& where, const std::string& what) {
+  return Selector(body, where, what).select();
+}
+
+}  // namespace muslin
