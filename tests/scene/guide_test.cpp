@@ -1,0 +1,62 @@
+// docs/guide/scene-file.md agrees with the parser: its examples are read, and it mentions every key.
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "muslin/material/material.hpp"
+#include "muslin/scene/scene.hpp"
+#include "muslin/scene/vocabulary.hpp"
+
+namespace muslin {
+namespace {
+
+std::string guide() {
+  std::ifstream in(std::string(MUSLIN_SOURCE_DIR) + "/docs/guide/scene-file.md");
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> toml_blocks(const std::string& page) {
+  std::vector<std::string> blocks;
+  const std::string open = "```toml\n", close = "```";
+  for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
+    at += open.size();
+    const std::size_t end = page.find(close, at);
+    blocks.push_back(page.substr(at, end - at));
+    at = end;
+  }
+  return blocks;
+}
+
+TEST(Guide, EveryExampleIsRead) {
+  const std::string body =
+      "[[body]]\nname = 'flag'\nmesh = 'flag.obj'\nvoxel_width = 1\nmaterial = 'thesis_flag'\n";
+  const auto blocks = toml_blocks(guide());
+  EXPECT_GE(blocks.size(), 7u);
+  for (const std::string& block : blocks) {
+    SCOPED_TRACE(block);
+    if (block.find("[lattice]") != std::string::npos) {
+      EXPECT_NO_THROW(parse_material(block, "guide.toml"));
+    } else {
+      const bool whole = block.find("[[body]]") != std::string::npos;
+      EXPECT_NO_THROW(parse_scene(whole ? block : block + body, "guide.toml"));
+    }
+  }
+}
+
+TEST(Guide, MentionsEveryKey) {
+  const std::string page = guide();
+  for (const VocabularyTable& table : scene_vocabulary()) {
+    for (const std::string& key : table.keys) {
+      const bool mentioned = page.find("`" + key + "`") != std::string::npos ||
+                             page.find("`[" + key + "]`") != std::string::npos ||
+                             page.find("`[[" + key + "]]`") != std::string::npos;
+      EXPECT_TRUE(mentioned) << "`" << key << "` of [" << table.name << "] is not in the guide";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace muslin
