@@ -46,18 +46,6 @@ void add_acting_gradient(const SolvedStep& step, const Potential& potential, Con
   }
 }
 
-/// v̂ = current·v₀ + previous·v₋₁, the velocity that inertia alone would give. Only a second-order BDF step
-/// looks back further than v₀; its first step, which has nothing to look back to, is an implicit Euler step.
-struct InertialWeights {
-  double current = 1, previous = 0;
-};
-InertialWeights inertial_weights(const SolvedStep& step) {
-  const bool looks_back = step.integrator == Integrator::bdf2 && step.context->dt < step.length * (1 - 1e-9);
-  if (!looks_back) return {};
-  const double ratio = step.length / step.before->previous_dt;
-  return {(1 + ratio) * (1 + ratio) / (1 + 2 * ratio), -ratio * ratio / (1 + 2 * ratio)};
-}
-
 }  // namespace
 
 EnergyFlow energy_flow(const SolvedStep& step) {
@@ -98,7 +86,8 @@ EnergyFlow energy_flow(const SolvedStep& step) {
     }
   }
 
-  const InertialWeights weights = inertial_weights(step);
+  const bool euler = step.integrator != Integrator::bdf2;
+  const double tau = step.context->dt;
   struct Sums {
     double loss = 0, reaction = 0;
     Sums operator+(const Sums& other) const { return {loss + other.loss, reaction + other.reaction}; }
@@ -108,14 +97,13 @@ EnergyFlow energy_flow(const SolvedStep& step) {
     for (std::size_t v = begin; v < end; ++v) {
       const Vec3& v0 = before.velocities[v];
       const Vec3& v1 = after.velocities[v];
-      Vec3 coasting = weights.current * v0;
-      if (weights.previous != 0) coasting += weights.previous * before.previous_velocities[v];
-      const Vec3 inertia = step.masses[v] / step.context->dt * (v1 - coasting);
-      if (step.integrator == Integrator::bdf2) {
-        sum.loss += inertia.dot(displacement[v]) - 0.5 * step.masses[v] * (v1 - v0).dot(v1 + v0);
-      } else {
-        sum.loss += 0.5 * step.masses[v] * (v1 - v0).squaredNorm();
-      }
+      // The prediction of symplectic Euler is of use only to loads; its inertia is that of its velocities.
+      const Vec3 acceleration =
+          euler ? Vec3((v1 - v0) / step.length)
+                : Vec3((after.positions[v] - step.context->inertial_prediction[v]) / (tau * tau));
+      const Vec3 inertia = step.masses[v] * acceleration;
+      sum.loss += euler ? 0.5 * step.masses[v] * (v1 - v0).squaredNorm()
+                        : inertia.dot(displacement[v]) - 0.5 * step.masses[v] * (v1 - v0).dot(v1 + v0);
       if (step.fixed[v]) sum.reaction += (inertia + total[v]).dot(displacement[v]);
     }
     return sum;

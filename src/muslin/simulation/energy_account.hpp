@@ -1,7 +1,7 @@
 // Where the energy of a step went: stored, supplied from outside, or lost. docs/theory/energy-balance.md
 // derives the sums; every one follows from the integrator's discrete equation of motion
 //
-//   M (v₁ − v̂)/dt + Σᵢ gᵢ = R,     R zero at free vertices and the reaction at held ones,
+//   M (x₁ − x̃)/dt² + Σᵢ gᵢ = R,     R zero at free vertices and the reaction at held ones,
 //
 // multiplied by the displacement Δ = x₁ − x₀ of the step.
 #pragma once

@@ -1,0 +1,27 @@
+// What other programs read, made from a run.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "muslin/cache/run_reader.hpp"
+#include "muslin/core/progress.hpp"
+
+namespace muslin {
+
+struct ExportOptions {
+  std::string body;                 ///< empty: the only body (.usda: all of them)
+  Surface surface = Surface::skin;  ///< not for .vtu, which shows the lattice
+};
+
+/// Writes the run by the suffix of `file`:
+///   .pc2 .mdd    point caches for the surface's mesh
+///   .obj .ply    one mesh per frame, NAME.0000.obj, …
+///   .glb .gltf   a mesh with a morph target per frame and an animation of their weights
+///   .usda        meshes with time samples of points, velocities and extents
+///   .vtu         the lattice's voxels per frame with displacement, velocity, stretch, and NAME.pvd
+/// Each file appears when it is complete. Errors: usage, for another suffix or an unknown body; file.
+void export_run(const RunReader& run, const std::filesystem::path& file, const ExportOptions& options = {},
+                const Progress& progress = {});
+
+}  // namespace muslin

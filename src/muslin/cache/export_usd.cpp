@@ -1,0 +1,145 @@
+#include <cctype>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "muslin/cache/export_formats.hpp"
+#include "muslin/cache/output_file.hpp"
+
+namespace muslin {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A name USD accepts: letters, digits, underscores, no digit in front; unique among `taken`.
+std::string identifier(const std::string& name, std::set<std::string>& taken) {
+  std::string result;
+  for (char c : name) result += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  if (result.empty() || std::isdigit(static_cast<unsigned char>(result.front()))) result = "_" + result;
+  std::string unique = result;
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = result + "_" + std::to_string(i);
+  return unique;
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return result;
+}
+
+template <class Range, class Format>
+std::string list(const Range& range, const Format& format) {
+  std::string text = "[";
+  for (const auto& item : range) {
+    if (text.size() > 1) text += ", ";
+    text += format(item);
+  }
+  return text + "]";
+}
+
+std::string ints(const std::vector<int>& values) {
+  return list(values, [](int value) { return std::to_string(value); });
+}
+std::string vectors(const std::vector<Vec3f>& values) {
+  return list(values, [](const Vec3f& v) { return fmt::format("({}, {}, {})", v.x(), v.y(), v.z()); });
+}
+
+void append_topology(WholeFile& out, const Mesh& mesh) {
+  std::vector<int> counts;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) counts.push_back(static_cast<int>(mesh.face(f).size()));
+  out.append("        uniform token subdivisionScheme = \"none\"\n        uniform bool doubleSided = 1\n");
+  out.append("        int[] faceVertexCounts = " + ints(counts) + "\n");
+  out.append("        int[] faceVertexIndices = " + ints(mesh.face_vertices) + "\n");
+  if (mesh.corner_uvs.empty()) return;
+  std::vector<Vec2> uvs = mesh.uvs;
+  std::vector<int> indices = mesh.corner_uvs;
+  for (int& index : indices) {
+    if (index >= 0) continue;
+    if (uvs.size() == mesh.uvs.size()) uvs.push_back(Vec2::Zero());  // of corners that have none
+    index = static_cast<int>(mesh.uvs.size());
+  }
+  out.append("        texCoord2f[] primvars:st = " +
+             list(uvs,
+                  [](const Vec2& uv) {
+                    return fmt::format("({}, {})", static_cast<float>(uv.x()), static_cast<float>(uv.y()));
+                  }) +
+             " (\n            interpolation = \"faceVarying\"\n        )\n");
+  out.append("        int[] primvars:st:indices = " + ints(indices) + "\n");
+}
+
+void append_groups(WholeFile& out, const Mesh& mesh) {
+  std::set<std::string> taken;
+  for (const MeshGroup& group : mesh.groups) {
+    if (group.faces.empty()) continue;
+    out.append(fmt::format("\n        def GeomSubset \"{}\"\n        {{\n", identifier(group.name, taken)));
+    out.append("            uniform token elementType = \"face\"\n");
+    out.append("            uniform token familyName = \"groups\"\n");
+    out.append("            int[] indices = " + ints(group.faces) + "\n        }\n");
+  }
+}
+
+template <class At>
+void append_samples(WholeFile& out, const std::string& attribute, int frames, const At& at) {
+  out.append("        " + attribute + ".timeSamples = {\n");
+  for (int frame = 0; frame < frames; ++frame)
+    out.append(fmt::format("            {}: {},\n", frame, at(frame)));
+  out.append("        }\n");
+}
+
+}  // namespace
+
+void export_usd(const RunReader& run, const fs::path& file, const ExportOptions& options,
+                const Progress& progress) {
+  std::vector<int> bodies;
+  if (options.body.empty()) {
+    for (std::size_t b = 0; b < run.bodies().size(); ++b) bodies.push_back(static_cast<int>(b));
+  } else {
+    bodies.push_back(run.find_body(options.body));
+  }
+  const int frames = run.frame_count();
+  const Surface surface = options.surface;
+  WholeFile out(file);
+  out.append(
+      fmt::format("#usda 1.0\n(\n    defaultPrim = \"run\"\n    doc = \"{}\"\n    endTimeCode = {}\n"
+                  "    framesPerSecond = {}\n    metersPerUnit = 1\n    startTimeCode = 0\n"
+                  "    timeCodesPerSecond = {}\n    upAxis = \"Y\"\n)\n\n",
+                  escaped(run.title()), frames - 1, run.frame_rate(), run.frame_rate()));
+  out.append("def Xform \"run\" (\n    kind = \"component\"\n)\n{\n");
+  std::set<std::string> taken;
+  double done = 0;
+  for (int body : bodies) {
+    const Mesh& mesh = run.mesh(body, surface);
+    out.append(fmt::format("    def Mesh \"{}\"\n    {{\n",
+                           identifier(run.bodies()[static_cast<std::size_t>(body)], taken)));
+    append_topology(out, mesh);
+    std::vector<Vec3f> extents;
+    append_samples(out, "point3f[] points", frames, [&](int frame) {
+      progress.at(done / (2.0 * frames * static_cast<double>(bodies.size())), "export");
+      ++done;
+      const std::vector<Vec3f> points = run.points(body, surface, frame);
+      Eigen::AlignedBox3f box;
+      for (const Vec3f& p : points) box.extend(p);
+      extents.push_back(box.min());
+      extents.push_back(box.max());
+      return vectors(points);
+    });
+    append_samples(out, "vector3f[] velocities", frames, [&](int frame) {
+      progress.at(done / (2.0 * frames * static_cast<double>(bodies.size())), "export");
+      ++done;
+      return vectors(run.velocities(body, surface, frame));
+    });
+    append_samples(out, "float3[] extent", frames, [&](int frame) {
+      const auto first = extents.begin() + 2 * frame;
+      return vectors({first[0], first[1]});
+    });
+    append_groups(out, mesh);
+    out.append("    }\n");
+  }
+  out.append("}\n");
+  out.commit();
+}
+
+}  // namespace muslin

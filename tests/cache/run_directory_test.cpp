@@ -1,0 +1,316 @@
+// The run directory: its files, and that a run which was killed, stopped or ran out of disk goes on to the
+// same bytes as one that never was.
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <map>
+#include <thread>
+
+#include "cache/scratch.hpp"
+#include "support/small_model.hpp"
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "muslin/cache/output_file.hpp"
+#include "muslin/cache/run_files.hpp"
+#include "muslin/cache/run_reader.hpp"
+#include "muslin/cache/run_writer.hpp"
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Scratch;
+using test::small_model;
+using testing::HasSubstr;
+
+std::shared_ptr<const Model> model() {
+  test::SmallModelOptions options;
+  options.tolerance = 1e-4;
+  return std::make_shared<const Model>(small_model(options));
+}
+
+void run_to(const fs::path& directory, int frames, bool resume, bool finish = true) {
+  Simulation simulation(model());
+  RunWriter writer(directory, simulation, frames, resume);
+  while (simulation.frame() < frames) {
+    simulation.advance();
+    writer.write_frame();
+  }
+  if (finish) writer.finish(RunStatus::finished);
+}
+
+/// All files by name. Times of the wall clock are left out: the last column of the diagnostics, and the
+/// timings in run.json.
+std::map<std::string, std::string> contents(const fs::path& directory) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string name = fs::relative(entry.path(), directory).string();
+    std::string content = bytes_of(entry.path());
+    if (name == "diagnostics.csv") {
+      std::istringstream lines(content);
+      content.clear();
+      for (std::string line; std::getline(lines, line);) content += line.substr(0, line.rfind(',')) + "\n";
+    } else if (name == "run.json") {
+      auto json = nlohmann::json::parse(content);
+      json.erase("timings");
+      content = json.dump();
+    }
+    files[name] = content;
+  }
+  return files;
+}
+
+void expect_same_run(const fs::path& a, const fs::path& b) {
+  const auto left = contents(a), right = contents(b);
+  for (const auto& [name, content] : left) {
+    ASSERT_TRUE(right.contains(name)) << name;
+    EXPECT_TRUE(content == right.at(name)) << name << " differs";
+  }
+  EXPECT_EQ(left.size(), right.size());
+}
+
+template <class Body>
+void expect_error(ErrorKind kind, const std::string& words, const Body& body) {
+  try {
+    body();
+    FAIL() << "no error: " << words;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    EXPECT_THAT(error.what(), HasSubstr(words));
+  }
+}
+
+TEST(RunDirectory, HoldsWhatTheDesignNames) {
+  Scratch scratch;
+  run_to(scratch / "run", 5, false);
+  for (const char* name : {"run.json", "scene.toml", "stats.json", "flag.skin.obj", "flag.skin.pc2",
+                           "flag.contour.obj", "flag.contour.pc2", "diagnostics.csv", "probes.csv",
+                           "checkpoint/000005.state", "checkpoint/000004.state"})
+    EXPECT_TRUE(fs::exists(scratch / "run" / name)) << name;
+  EXPECT_FALSE(fs::exists(scratch / "run/checkpoint/000003.state"));
+  EXPECT_THAT(
+      bytes_of(scratch / "run/diagnostics.csv"),
+      testing::StartsWith("frame,time,kinetic,elastic,potential,work,dissipated,momentum_x,momentum_y,"
+                          "momentum_z,newton_iterations,linear_iterations,residual,max_stretch,"
+                          "min_distance,wall_ms\n0,0,0,0,"));
+  EXPECT_THAT(bytes_of(scratch / "run/diagnostics.csv"), HasSubstr(",inf,"));
+  EXPECT_THAT(bytes_of(scratch / "run/probes.csv"),
+              testing::StartsWith("frame,time,name,x,y,z,vx,vy,vz\n0,0,tip,1.5,0,0.5,0,0,0\n1,"));
+  const auto stats = nlohmann::json::parse(bytes_of(scratch / "run/stats.json"))["bodies"][0];
+  EXPECT_EQ(stats["springs"]["face_diagonal"], 23);
+  EXPECT_EQ(stats["mass"], 60.0);
+  const auto run = nlohmann::json::parse(bytes_of(scratch / "run/run.json"));
+  EXPECT_EQ(run["status"], "finished");
+  EXPECT_EQ(run["scene"]["title"], "a small flag");
+}
+
+TEST(RunDirectory, IsReadBack) {
+  Scratch scratch;
+  run_to(scratch / "run", 5, false);
+  const RunReader run(scratch / "run");
+  EXPECT_EQ(run.status(), RunStatus::finished);
+  ASSERT_EQ(run.frame_count(), 6);
+  EXPECT_EQ(run.frame_rate(), 24);
+  EXPECT_EQ(run.find_body(""), 0);
+  EXPECT_EQ(run.mesh(0, Surface::skin).face_vertices, model()->bodies[0].mesh.face_vertices);
+  EXPECT_EQ(run.lattice(0).voxels, model()->bodies[0].lattice.voxel_vertices);
+  EXPECT_EQ(run.lattice(0).rest_positions, model()->rest_positions);
+  Simulation simulation(model());
+  for (int frame = 0; frame < 5; ++frame) simulation.advance();
+  std::vector<Vec3> skin(8);
+  model()->bodies[0].skin.apply(simulation.state().positions, skin);
+  const auto points = run.points(0, Surface::skin, 5);
+  for (std::size_t i = 0; i < skin.size(); ++i) EXPECT_EQ(points[i], skin[i].cast<float>());
+  EXPECT_EQ(run.diagnostics()[5].dissipated, simulation.diagnostics().dissipated);
+  const auto before = run.points(0, Surface::skin, 2), after = run.points(0, Surface::skin, 4);
+  EXPECT_LT((run.velocities(0, Surface::skin, 3)[1] - 12 * (after[1] - before[1])).norm(), 1e-5);
+  expect_error(ErrorKind::usage, "flag", [&] { run.find_body("sail"); });
+  expect_error(ErrorKind::file, "no run here", [&] { RunReader(scratch.path()); });
+}
+
+TEST(RunDirectory, AStoppedRunGoesOnToTheSameBytes) {
+  Scratch scratch;
+  run_to(scratch / "straight", 8, false);
+  run_to(scratch / "stopped", 3, false);
+  run_to(scratch / "stopped", 8, true);
+  expect_same_run(scratch / "straight", scratch / "stopped");
+}
+
+TEST(RunDirectory, ARunStoppedInsideAFrameGoesOnToTheSameBytes) {
+  Scratch scratch;
+  run_to(scratch / "straight", 4, false);
+  {
+    Simulation simulation(model());
+    RunWriter writer(scratch / "stopped", simulation, 4, false);
+    simulation.advance();
+    writer.write_frame();
+    int polls = 0;
+    Progress progress;
+    progress.cancelled = [&] { return ++polls > 2; };
+    EXPECT_THROW(simulation.advance(progress), Error);
+    writer.finish(RunStatus::interrupted, "test");
+  }
+  EXPECT_TRUE(fs::exists(scratch / "stopped/checkpoint/000001+0002.state"));
+  EXPECT_EQ(RunReader(scratch / "stopped").status(), RunStatus::interrupted);
+  run_to(scratch / "stopped", 4, true);
+  expect_same_run(scratch / "straight", scratch / "stopped");
+}
+
+/// Runs body in a process of its own and returns how it ended, as waitpid says.
+template <class Body>
+pid_t fork_off(const Body& body) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    int code = 99;
+    try {
+      body();
+      code = 0;
+    } catch (const Error& error) {
+      code = static_cast<int>(error.kind());
+    }
+    ::_exit(code);
+  }
+  return child;
+}
+
+TEST(RunDirectory, AKilledRunGoesOnToTheSameBytes) {
+  Scratch scratch;
+  constexpr int frames = 200;
+  run_to(scratch / "straight", frames, false);
+  int interrupted = 0;
+  for (int delay_ms : {3, 11, 23, 42, 61, 95}) {
+    const fs::path directory = scratch / ("killed" + std::to_string(delay_ms));
+    // Killed twice, the second time while resuming.
+    for (bool resume : {false, true}) {
+      const pid_t child = fork_off([&] { run_to(directory, frames, resume); });
+      std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+      ::kill(child, SIGKILL);
+      int status = 0;
+      ::waitpid(child, &status, 0);
+      if (WIFSIGNALED(status)) ++interrupted;
+    }
+    run_to(directory, frames, true);
+    expect_same_run(scratch / "straight", directory);
+  }
+  EXPECT_GT(interrupted, 3);
+}
+
+TEST(RunDirectory, HalfWrittenFramesBehindTheCheckpointAreCutOff) {
+  Scratch scratch;
+  run_to(scratch / "straight", 6, false);
+  run_to(scratch / "run", 3, false, false);
+  // What a kill in the middle of frame 4 leaves: points of one cache, half a sample of another, half a row.
+  std::string skin = bytes_of(scratch / "run/flag.skin.pc2");
+  skin += std::string(skin.end() - 8 * 12, skin.end());
+  skin[28] = 5;  // the number of samples
+  test::write_bytes(scratch / "run/flag.skin.pc2", skin);
+  test::write_bytes(scratch / "run/flag.contour.pc2", bytes_of(scratch / "run/flag.contour.pc2") + "half");
+  test::write_bytes(scratch / "run/diagnostics.csv", bytes_of(scratch / "run/diagnostics.csv") + "4,0.16,1");
+  test::write_bytes(scratch / "run/checkpoint/000004.state.part", "half a checkpoint");
+  EXPECT_EQ(RunReader(scratch / "run").frame_count(), 4);
+  run_to(scratch / "run", 6, true);
+  fs::remove(scratch / "run/checkpoint/000004.state.part");
+  expect_same_run(scratch / "straight", scratch / "run");
+}
+
+TEST(RunDirectory, ADamagedCheckpointFallsBackOnTheOneBefore) {
+  Scratch scratch;
+  run_to(scratch / "straight", 6, false);
+  run_to(scratch / "run", 4, false);
+  test::write_bytes(scratch / "run/checkpoint/000004.state",
+                    bytes_of(scratch / "run/checkpoint/000004.state").substr(0, 500));
+  run_to(scratch / "run", 6, true);
+  expect_same_run(scratch / "straight", scratch / "run");
+}
+
+TEST(RunDirectory, AFullDiskIsAnErrorAndTheRunGoesOnLater) {
+  Scratch scratch;
+  constexpr int frames = 40;
+  run_to(scratch / "straight", frames, false);
+  const pid_t child = fork_off([&] {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{5000, 5000};  // bytes a file may have
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    run_to(scratch / "run", frames, false);
+  });
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), static_cast<int>(ErrorKind::file));
+  const RunReader broken(scratch / "run");
+  EXPECT_GT(broken.frame_count(), 2);
+  EXPECT_LT(broken.frame_count(), frames);
+  run_to(scratch / "run", frames, true);
+  expect_same_run(scratch / "straight", scratch / "run");
+}
+
+TEST(RunDirectory, ReplacesAnEarlierRunAndNothingElse) {
+  Scratch scratch;
+  run_to(scratch / "run", 5, false);
+  test::write_bytes(scratch / "run/notes.txt", "mine");
+  run_to(scratch / "run", 2, false);
+  EXPECT_EQ(bytes_of(scratch / "run/notes.txt"), "mine");
+  EXPECT_EQ(RunReader(scratch / "run").frame_count(), 3);
+  EXPECT_FALSE(fs::exists(scratch / "run/checkpoint/000005.state"));
+}
+
+TEST(RunDirectory, RefusesPlacesThatAreNoRun) {
+  Scratch scratch;
+  test::write_bytes(scratch / "file", "x");
+  fs::create_directories(scratch / "photos");
+  test::write_bytes(scratch / "photos/cat.png", "x");
+  expect_error(ErrorKind::file, "not a directory", [&] { run_to(scratch / "file", 1, false); });
+  expect_error(ErrorKind::file, "holds no run", [&] { run_to(scratch / "photos", 1, false); });
+  expect_error(ErrorKind::file, "holds no run", [&] { run_to(scratch / "photos", 1, true); });
+  expect_error(ErrorKind::file, "file/below", [&] { run_to(scratch / "file/below", 1, false); });
+  EXPECT_EQ(std::distance(fs::directory_iterator(scratch / "photos"), {}), 1);
+}
+
+TEST(RunDirectory, LetsOneProcessWrite) {
+  Scratch scratch;
+  Simulation simulation(model());
+  RunWriter writer(scratch / "run", simulation, 1, false);
+  expect_error(ErrorKind::file, "another process", [&] { run_to(scratch / "run", 1, true); });
+}
+
+TEST(RunDirectory, SaysWhatChangedInTheBodies) {
+  Scratch scratch;
+  run_to(scratch / "run", 2, false);
+  Model changed = small_model();
+  changed.scene.resolved = R"({"title":"a small flag","body":[{"name":"flag","voxel_width":0.5}]})";
+  Simulation simulation(std::make_shared<const Model>(std::move(changed)));
+  expect_error(ErrorKind::input, "body.0.voxel_width",
+               [&] { RunWriter(scratch / "run", simulation, 4, true); });
+}
+
+TEST(RunDirectory, NotesOtherChangesOnResume) {
+  Scratch scratch;
+  run_to(scratch / "run", 2, false);
+  Model changed = small_model();
+  changed.scene.resolved = R"({"title":"the flag","body":[{"name":"flag","voxel_width":1.0}]})";
+  Simulation simulation(std::make_shared<const Model>(std::move(changed)));
+  RunWriter writer(scratch / "run", simulation, 4, true);
+  EXPECT_TRUE(writer.resumed());
+  EXPECT_EQ(simulation.frame(), 2);
+  EXPECT_EQ(writer.changes(), std::vector<std::string>{"title"});
+  writer.finish(RunStatus::interrupted);
+  const auto run = nlohmann::json::parse(bytes_of(scratch / "run/run.json"));
+  EXPECT_EQ(run["timings"]["sessions"][1]["changed"][0], "title");
+}
+
+TEST(RunDirectory, BodiesThatCannotNameFilesAreRefused) {
+  for (const char* name : {"", "../flag", "a/b", ".hidden", "two\nlines"})
+    expect_error(ErrorKind::input, "cannot name files", [&] { body_files(name); });
+  EXPECT_EQ(body_files("Fahne 2").skin_cache, "Fahne 2.skin.pc2");
+}
+
+}  // namespace
+}  // namespace muslin
