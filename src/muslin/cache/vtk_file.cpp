@@ -152,7 +152,7 @@ VtkVoxels read_voxels(const fs::path& path) {
   };
   constexpr std::string_view marker = "<AppendedData encoding=\"raw\">\n_";
   const std::size_t data = text.find(marker);
-  if (data == std::string::npos) throw refuse();
+  if (data == std::string::npos || !text.ends_with("</VTKFile>\n")) throw refuse();
   const auto array = [&](const std::string& name, const char* type) {
     const std::string_view head(text.data(), data);
     const std::size_t at = head.find(fmt::format("type=\"{}\" Name=\"{}\"", type, name));
