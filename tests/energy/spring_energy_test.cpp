@@ -18,15 +18,15 @@ std::vector<Vec3> crumpled(const std::vector<Vec3>& rest, double size) {
   return test::sum(rest, 1, test::random_vectors(rest.size(), size, 5));
 }
 
-TEST(SpringEnergy, BoxSpringsHaveTheFlagsCounts) {
-  const Springs springs = test::box_springs(test::box_lattice({10, 6, 1}));
+TEST(SpringEnergy, BoxLatticesHaveTheFlagsCounts) {
+  const Springs springs = build_springs(test::box_lattice({10, 6, 1}), Bracing::kuhn);
   EXPECT_EQ(springs.count_by_kind, (std::array<std::int64_t, 3>{349, 256, 60}));
 }
 
 TEST(SpringEnergy, PassesTheBatteryStretchedAndCompressed) {
   const Lattice lattice = test::box_lattice({4, 3, 2}, 0.5);
   const std::vector<Vec3> rest = test::rest_positions(lattice);
-  const Springs springs = test::box_springs(lattice);
+  const Springs springs = build_springs(lattice, Bracing::kuhn);
   std::vector<float> weights;
   for (std::int64_t s = 0; s < springs.count; ++s)
     weights.push_back(0.25F + 0.5F * static_cast<float>(s % 3));
@@ -42,7 +42,7 @@ TEST(SpringEnergy, PassesTheBatteryStretchedAndCompressed) {
 TEST(SpringEnergy, SlabsGiveTheSameForcesAsOneVertexAtATime) {
   // 61·41·2 vertices make several slabs, with springs between them.
   const Lattice lattice = test::box_lattice({60, 40, 1});
-  const Springs springs = test::box_springs(lattice);
+  const Springs springs = build_springs(lattice, Bracing::kuhn);
   const SpringEnergy energy(springs, 1, flag_moduli);
   const std::vector<Vec3> x = crumpled(test::rest_positions(lattice), 0.3);
   std::vector<Vec3> expected(x.size(), Vec3::Zero());
@@ -68,7 +68,7 @@ TEST(SpringEnergy, SlabsGiveTheSameForcesAsOneVertexAtATime) {
 
 TEST(SpringEnergy, ACollapsedSpringStoresItsEnergyAndGivesNoNan) {
   const Lattice lattice = test::box_lattice({1, 1, 1});
-  const SpringEnergy energy(test::box_springs(lattice), 1, flag_moduli);
+  const SpringEnergy energy(build_springs(lattice, Bracing::kuhn), 1, flag_moduli);
   const std::vector<Vec3> x(8, Vec3(1, 2, 3));
   EXPECT_NEAR(energy.value(x), 0.5 * (12 * 20000 + 6 * 100 * 2 + 1 * 100 * 3), 1e-6);
   const std::vector<Vec3> y = test::hessian_product(energy, x, test::random_vectors(8, 1, 1));
@@ -81,7 +81,7 @@ TEST(SpringEnergy, ACollapsedSpringStoresItsEnergyAndGivesNoNan) {
 
 TEST(SpringEnergy, MaxStretchIsTheLargestLengthOverRestLength) {
   const Lattice lattice = test::box_lattice({2, 1, 1});
-  const SpringEnergy energy(test::box_springs(lattice), 1, flag_moduli);
+  const SpringEnergy energy(build_springs(lattice, Bracing::kuhn), 1, flag_moduli);
   std::vector<Vec3> x = test::rest_positions(lattice);
   EXPECT_NEAR(energy.max_stretch(x), 1, 1e-12);
   for (Vec3& p : x) p.x() *= 1.5;
@@ -92,8 +92,8 @@ class SpringDampingTest : public testing::Test {
  protected:
   const Lattice lattice_ = test::box_lattice({3, 2, 1});
   const std::vector<Vec3> rest_ = test::rest_positions(lattice_);
-  const std::shared_ptr<const SpringEnergy> springs_ =
-      std::make_shared<SpringEnergy>(test::box_springs(lattice_), 1, std::array<double, 3>{200, 30, 10});
+  const std::shared_ptr<const SpringEnergy> springs_ = std::make_shared<SpringEnergy>(
+      build_springs(lattice_, Bracing::kuhn), 1, std::array<double, 3>{200, 30, 10});
   const SpringDamping damping_{springs_, 0.02};
 
   StepContext context(const std::vector<Vec3>& velocities, double dt) const {

@@ -30,7 +30,7 @@ struct Flag {
     for (const auto& corners : lattice.voxel_vertices) {
       for (const int v : corners) masses[static_cast<std::size_t>(v)] += 10.0 / 8;
     }
-    springs = std::make_shared<SpringEnergy>(box_springs(lattice), 1, moduli);
+    springs = std::make_shared<SpringEnergy>(build_springs(lattice, Bracing::kuhn), 1, moduli);
     gravity = std::make_shared<UniformGravity>(masses, Vec3(0, -9.8, 0));
     fixed.assign(rest.size(), 0);
     targets = rest;

@@ -1,4 +1,4 @@
-// A box of voxels with its springs, for tests that need a lattice and no mesh.
+// A box of voxels, for tests that need a lattice and no mesh.
 #pragma once
 
 #include <array>
@@ -41,36 +41,6 @@ inline std::vector<Vec3> rest_positions(const Lattice& lattice) {
   std::vector<Vec3> x;
   for (std::size_t v = 0; v < lattice.vertex_count(); ++v) x.push_back(lattice.rest_position(v));
   return x;
-}
-
-/// The springs of a box by brute force: one per direction and pair of vertices inside the box.
-inline Springs box_springs(const Lattice& lattice) {
-  Springs springs;
-  for (const Vec3i& offset : {Vec3i(1, 0, 0), Vec3i(0, 1, 0), Vec3i(0, 0, 1), Vec3i(1, 1, 0), Vec3i(1, 0, 1),
-                              Vec3i(0, 1, 1), Vec3i(1, 1, 1)}) {
-    springs.directions.push_back({offset, static_cast<SpringKind>(offset.sum() - 1)});
-  }
-  const Vec3i size = lattice.extent + Vec3i::Ones();
-  for (std::size_t d = 0; d < springs.directions.size(); ++d) {
-    const Vec3i offset = springs.directions[d].offset;
-    const Vec3i last = size - offset;
-    for (int j = 0; j < last.y(); ++j) {
-      for (int k = 0; k < last.z(); ++k) {
-        SpringRun run;
-        run.direction = static_cast<int>(d);
-        run.a = (j * size.z() + k) * size.x();
-        run.b = ((j + offset.y()) * size.z() + k + offset.z()) * size.x() + offset.x();
-        run.length = last.x();
-        run.first = springs.count;
-        springs.runs.push_back(run);
-        springs.count += run.length;
-        springs.count_by_kind[static_cast<std::size_t>(springs.directions[d].kind)] += run.length;
-      }
-    }
-  }
-  springs.share.assign(static_cast<std::size_t>(springs.count), 1);
-  springs.mean_fill.assign(static_cast<std::size_t>(springs.count), 1);
-  return springs;
 }
 
 }  // namespace muslin::test
