@@ -53,27 +53,57 @@ bool is_run(const fs::path& directory) {
   return json.is_object() && json.contains("muslin");
 }
 
+namespace {
+
+const std::vector<std::string>& own_names() {
+  static const std::vector<std::string> names = {"scene.toml", "diagnostics.csv", "probes.csv", "stats.json",
+                                                 "run.json"};
+  return names;
+}
+
+std::vector<std::string> names_of(const std::string& body) {
+  const BodyFiles files = body_files(body);
+  return {files.skin_mesh,     files.skin_cache,   files.contour_mesh,
+          files.contour_cache, files.lattice_mesh, files.lattice_cache};
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code code;
+  fs::remove(path, code);
+  if (code) {
+    throw Error(ErrorKind::file, {path.string()}, "cannot remove the earlier run: " + code.message(),
+                "choose another directory with -o");
+  }
+}
+
+}  // namespace
+
+void remove_unfinished_files(const fs::path& directory, const std::vector<std::string>& bodies) {
+  std::vector<std::string> owned = own_names();
+  for (const std::string& body : bodies)
+    for (const std::string& name : names_of(body)) owned.push_back(name);
+  std::vector<fs::path> doomed;
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(directory / "checkpoint", code))
+    if (entry.path().extension() == ".part") doomed.push_back(entry.path());
+  // Files are written as NAME.part or NAME.part-… and renamed.
+  for (const auto& entry : fs::directory_iterator(directory, code)) {
+    const std::string name = entry.path().filename().string();
+    const auto unfinished = [&name](const std::string& whole) { return name.starts_with(whole + ".part"); };
+    if (std::any_of(owned.begin(), owned.end(), unfinished)) doomed.push_back(entry.path());
+  }
+  for (const fs::path& path : doomed) remove_file(path);
+}
+
 void remove_run_files(const fs::path& directory) {
   std::vector<fs::path> doomed;
-  // run.json goes last: until then the directory is known as a run and can be cleaned again.
   const auto json = nlohmann::json::parse(read_file(directory / "run.json"), nullptr, false);
-  for (const auto& body : json.value("bodies", nlohmann::json::array())) {
-    const BodyFiles files = body_files(body.value("name", ""));
-    for (const std::string* name : {&files.skin_mesh, &files.skin_cache, &files.contour_mesh,
-                                    &files.contour_cache, &files.lattice_mesh, &files.lattice_cache})
-      doomed.push_back(directory / *name);
-  }
+  for (const auto& body : json.value("bodies", nlohmann::json::array()))
+    for (const std::string& name : names_of(body.value("name", ""))) doomed.push_back(directory / name);
   for (const CheckpointFile& file : list_checkpoints(directory)) doomed.push_back(file.path);
-  for (const char* name : {"scene.toml", "diagnostics.csv", "probes.csv", "stats.json", "run.json"})
-    doomed.push_back(directory / name);
-  for (const fs::path& path : doomed) {
-    std::error_code code;
-    fs::remove(path, code);
-    if (code) {
-      throw Error(ErrorKind::file, {path.string()}, "cannot remove the earlier run: " + code.message(),
-                  "choose another directory with -o");
-    }
-  }
+  // run.json goes last: until then the directory is known as a run and can be cleaned again.
+  for (const std::string& name : own_names()) doomed.push_back(directory / name);
+  for (const fs::path& path : doomed) remove_file(path);
 }
 
 }  // namespace muslin

@@ -28,6 +28,9 @@ std::vector<CheckpointFile> list_checkpoints(const std::filesystem::path& run);
 /// True if the directory holds a run of muslin (finished or not).
 bool is_run(const std::filesystem::path& directory);
 
+/// Removes files that a process killed while writing left half done. Errors: file.
+void remove_unfinished_files(const std::filesystem::path& directory, const std::vector<std::string>& bodies);
+
 /// Removes what an earlier run wrote, and nothing else. Errors: file.
 void remove_run_files(const std::filesystem::path& directory);
 

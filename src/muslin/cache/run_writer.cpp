@@ -334,8 +334,11 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
 
 RunWriter::RunWriter(fs::path directory, Simulation& simulation, int total_frames, bool resume)
     : parts_(std::make_unique<Parts>(std::move(directory), simulation, total_frames)) {
-  for (const Body& body : simulation.model().bodies) body_files(body.name);
+  for (const Body& body : simulation.model().bodies) body_files(body.name);  // refuses impossible names
   parts_->claim();
+  std::vector<std::string> bodies;
+  for (const Body& body : simulation.model().bodies) bodies.push_back(body.name);
+  remove_unfinished_files(parts_->directory, bodies);
   parts_->resumed = resume && parts_->resume();
   if (!parts_->resumed) {
     parts_->start();
