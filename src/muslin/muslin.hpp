@@ -12,6 +12,8 @@
 #include "muslin/lattice/embedding.hpp"
 #include "muslin/lattice/lattice.hpp"
 #include "muslin/lattice/springs.hpp"
+#include "muslin/material/material.hpp"
+#include "muslin/scene/describe.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/scene.hpp"
 #include "muslin/simulation/simulation.hpp"

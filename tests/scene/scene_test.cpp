@@ -272,6 +272,20 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{flag_body + "[[probe]]\nname = 'a'\nat = [0, 0, 0]\n[[probe]]\nname = 'a'\nat = [0, 0, 0]\n",
               "two of [[probe]] called `a`"}));
 
+TEST(Scene, YoungsModulusStandsInPlaceOfTheThreeModuli) {
+  const std::string body = "[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nbracing = 'full'\n[body.material]\n";
+  // Full bracing with the standard shear modulus is isotropic: k1 = k2 + 8 k3 / 3 and E = 2.5 (k2 + 4 k3 /
+  // 3).
+  const Material m = parse(body + "density = 1\nyoungs_modulus = 1000\n").bodies[0].material;
+  EXPECT_NEAR(m.edge_modulus, m.face_diagonal_modulus + 8 * m.body_diagonal_modulus / 3, 1e-9);
+  EXPECT_NEAR(2.5 * (m.face_diagonal_modulus + 4 * m.body_diagonal_modulus / 3), 1000, 1e-9);
+  EXPECT_THAT(message(body + "density = 1\nyoungs_modulus = 1000\nshear_modulus = 1e6\n"),
+              HasSubstr("`shear_modulus`"));
+  EXPECT_THAT(message(body + "density = 1\nyoungs_modulus = 1000\nedge_modulus = 1\n"),
+              HasSubstr("keep one"));
+  EXPECT_THAT(message(body + "density = 1\nedge_modulus = 1\nshear_modulus = 1\n"), HasSubstr("give both"));
+}
+
 TEST(Scene, SeveralBodiesMustBeToldApart) {
   const std::string two = flag_body + "[[body]]\nmesh = 'b.obj'\nvoxel_width = 1\nmaterial = 'thesis_flag'\n";
   EXPECT_EQ(parse(two).bodies[1].name, "b");

@@ -17,6 +17,11 @@ using Json = nlohmann::ordered_json;
 Json vector(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+std::string counted(std::size_t count, const std::string& one) { return counted(count, one, one + "s"); }
+
 /// Below this symplectic_euler is stable for every body [s].
 double stable_step(const Model& model) {
   double step = std::numeric_limits<double>::infinity();
@@ -50,8 +55,8 @@ std::string body_text(const Body& body, const BodySettings& settings) {
   const BodyStatistics& s = body.statistics;
   const Vec3i& n = body.lattice.extent;
   const std::string kind = body.sheet ? fmt::format("sheet, {:.4g} m thick", body.thickness) : "solid";
-  std::string text =
-      fmt::format("body {}: {} ({} polygons, {})\n", body.name, settings.mesh, body.mesh.face_count(), kind);
+  std::string text = fmt::format("body {}: {} ({}, {})\n", body.name, settings.mesh,
+                                 counted(body.mesh.face_count(), "polygon"), kind);
   text += fmt::format("  voxels      {} of {:.6g} m in {} x {} x {}, {:.4g} % of the surface covered\n",
                       s.voxels, body.lattice.width, n.x(), n.y(), n.z(), 100 * s.coverage);
   text += fmt::format("  lattice     {} vertices, {} tetrahedra\n", s.vertices, s.tetrahedra);
@@ -63,11 +68,6 @@ std::string body_text(const Body& body, const BodySettings& settings) {
                   body.contour.method == ContourMethod::squares ? "squares" : "cubes", s.contour_distance);
   return text;
 }
-
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-std::string counted(std::size_t count, const std::string& one) { return counted(count, one, one + "s"); }
 
 }  // namespace
 
