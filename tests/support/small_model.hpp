@@ -73,7 +73,7 @@ inline Model small_model(const SmallModelOptions& options = {}) {
   Body body;
   body.name = options.body_name;
   body.lattice = box_lattice({3, 2, 1});
-  body.springs = box_springs(body.lattice);
+  body.springs = build_springs(body.lattice, Bracing::kuhn);
   for (int c = 0; c < 8; ++c)
     body.mesh.positions.emplace_back(3.0 * (c & 1), 2.0 * (c >> 1 & 1), 1.0 * (c >> 2 & 1));
   const std::vector<std::vector<int>> faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},

@@ -1,0 +1,95 @@
+// run_scene: a scene file to a run directory, stopped and resumed.
+#include "muslin/cache/run.hpp"
+
+#include <cmath>
+
+#include "cache/scratch.hpp"
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "muslin/cache/run_reader.hpp"
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+namespace {
+
+using test::bytes_of;
+using test::Scratch;
+
+const std::filesystem::path scene =
+    std::filesystem::path(MUSLIN_SOURCE_DIR) / "scenes" / "thesis" / "2_two_corners.toml";
+
+RunOptions options(const std::filesystem::path& directory, int frames) {
+  RunOptions options;
+  options.directory = directory;
+  options.frames = frames;
+  return options;
+}
+
+TEST(Run, WritesTheThesisFlagAndReportsProgress) {
+  Scratch scratch;
+  RunOptions asked = options(scratch / "run", 4);
+  std::vector<RunProgress> reports;
+  asked.report = [&](const RunProgress& progress) { reports.push_back(progress); };
+  const RunResult result = run_scene(scene, asked);
+  EXPECT_EQ(result.first_frame, 0);
+  EXPECT_EQ(result.last_frame, 4);
+  ASSERT_FALSE(reports.empty());
+  EXPECT_EQ(reports.back().frame, 4);
+  EXPECT_EQ(reports.back().fraction, 1);
+  EXPECT_EQ(reports.back().seconds_left, 0);
+  const RunReader run(scratch / "run");
+  EXPECT_EQ(run.status(), RunStatus::finished);
+  EXPECT_EQ(run.frame_count(), 5);
+  EXPECT_EQ(bytes_of(scratch / "run/scene.toml"), bytes_of(scene));
+  const auto stats = nlohmann::json::parse(bytes_of(scratch / "run/stats.json"))["bodies"][0];
+  EXPECT_EQ(stats["vertices"], 154);
+  EXPECT_EQ(stats["springs"]["edge"], 349);
+  EXPECT_NEAR(stats["mass"].get<double>(), 600, 1e-9);
+  const Diagnostics& first = run.diagnostics()[0];
+  for (const Diagnostics& row : run.diagnostics())
+    EXPECT_NEAR(row.balance(), first.balance(), 1.0) << row.frame;  // of some 10 kJ
+}
+
+TEST(Run, CtrlCLeavesARunThatGoesOnToTheSameBytes) {
+  Scratch scratch;
+  run_scene(scene, options(scratch / "straight", 4));
+  RunOptions stopped = options(scratch / "stopped", 4);
+  bool stop = false;
+  stopped.report = [&](const RunProgress& progress) { stop = progress.frame == 2; };
+  stopped.cancelled = [&] { return stop; };
+  try {
+    run_scene(scene, stopped);
+    FAIL() << "not stopped";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::interrupted);
+    EXPECT_THAT(error.what(), testing::HasSubstr("--resume"));
+  }
+  EXPECT_EQ(RunReader(scratch / "stopped").status(), RunStatus::interrupted);
+  RunOptions resumed = options(scratch / "stopped", 4);
+  resumed.resume = true;
+  EXPECT_EQ(run_scene(scene, resumed).first_frame, 2);
+  for (const char* name : {"flag.skin.pc2", "flag.contour.pc2", "probes.csv", "checkpoint/000004.state"})
+    EXPECT_EQ(bytes_of(scratch / "straight" / name), bytes_of(scratch / "stopped" / name)) << name;
+}
+
+TEST(Run, ResumesWithOtherForcesButNotWithOtherBodies) {
+  Scratch scratch;
+  run_scene(scene, options(scratch / "run", 2));
+  RunOptions resumed = options(scratch / "run", 3);
+  resumed.resume = true;
+  resumed.overrides = {"time.duration=9"};
+  EXPECT_THAT(run_scene(scene, resumed).changes, testing::ElementsAre("time.duration"));
+  resumed.overrides = {"body.flag.voxel_width=0.5"};
+  try {
+    run_scene(scene, resumed);
+    FAIL() << "resumed with another lattice";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    EXPECT_THAT(error.what(), testing::HasSubstr("body.0.voxel_width"));
+  }
+  EXPECT_EQ(RunReader(scratch / "run").frame_count(), 4);
+}
+
+}  // namespace
+}  // namespace muslin
