@@ -1,3 +1,74 @@
-#include "muslin/muslin.hpp"
+// The muslin program: maps the command line to the library and errors to exit codes.
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
 
-int main() { return 0; }
+#include "command.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/version.hpp"
+
+namespace muslin::app {
+namespace {
+
+volatile std::sig_atomic_t signalled = 0;
+
+void on_signal(int) {
+  if (signalled) std::_Exit(static_cast<int>(ErrorKind::interrupted));  // asked twice: at once
+  signalled = 1;
+}
+
+int fail(const std::string& message, int code) {
+  std::fprintf(stderr, "muslin: %s\n", message.c_str());
+  return code;
+}
+
+}  // namespace
+
+bool interrupted() { return signalled != 0; }
+
+void listen_for_interrupts() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw Error(ErrorKind::file, "cannot write to standard output", "check the disk or the pipe it goes to");
+}
+
+int run(int argc, char** argv) {
+  CLI::App program{"muslin turns any mesh into simulated cloth or soft solid."};
+  program.set_version_flag("--version", std::string("muslin ") + version());
+  program.require_subcommand(1);
+  program.fallthrough(false);
+  add_run(program);
+  add_check(program);
+  add_build(program);
+  add_field(program);
+  add_render(program);
+  add_export(program);
+  add_materials(program);
+  
+  try {
+    program.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& help) {
+    program.exit(help);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return fail(std::string(error.what()) + "; see muslin --help", static_cast<int>(ErrorKind::usage));
+  } catch (const Error& error) {
+    return fail(error.what(), static_cast<int>(error.kind()));
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; choose a larger voxel_width", static_cast<int>(ErrorKind::solver));
+  } catch (const std::exception& error) {
+    return fail(std::string("internal error: ") + error.what() + "; please report this with the scene",
+                static_cast<int>(ErrorKind::solver));
+  }
+}
+
+}  // namespace muslin::app
+
+int main(int argc, char** argv) { return muslin::app::run(argc, argv); }

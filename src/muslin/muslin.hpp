@@ -1,9 +1,14 @@
 // The public façade: everything a program, a plug-in or a binding uses.
 #pragma once
 
+#include "muslin/cache/export.hpp"
+#include "muslin/cache/run.hpp"
+#include "muslin/cache/run_reader.hpp"
+#include "muslin/cache/stages.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/progress.hpp"
+#include "muslin/field/field_print.hpp"
 #include "muslin/field/signed_distance.hpp"
 #include "muslin/geometry/inspect.hpp"
 #include "muslin/geometry/mesh.hpp"
@@ -13,8 +18,12 @@
 #include "muslin/lattice/lattice.hpp"
 #include "muslin/lattice/springs.hpp"
 #include "muslin/material/material.hpp"
+#include "muslin/render/movie.hpp"
+#include "muslin/render/plot.hpp"
+#include "muslin/render/raytrace.hpp"
 #include "muslin/scene/describe.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/scene.hpp"
 #include "muslin/simulation/simulation.hpp"
 #include "muslin/surface/contour.hpp"
+#include "muslin/version.hpp"

@@ -19,7 +19,7 @@ std::vector<Vec3> widened(const std::vector<Vec3f>& points) {
   return result;
 }
 
-void export_meshes(const RunReader& run, const fs::path& file, int body, Surface surface,
+void export_meshes(const RunReader& run, const fs::path& file, int body, SurfaceKind surface,
                    const Progress& progress) {
   for (int frame = 0; frame < run.frame_count(); ++frame) {
     progress.at(static_cast<double>(frame) / run.frame_count(), "export");
@@ -49,7 +49,7 @@ void export_run(const RunReader& run, const fs::path& file, const ExportOptions&
                 "use .pc2, .mdd, .obj, .ply, .usda, .glb, .gltf or .vtu");
   }
   const int body = run.find_body(options.body);
-  const Surface surface = options.surface;
+  const SurfaceKind surface = options.surface;
   const int frames = run.frame_count();
   const FramePoints at = [&](int frame) {
     progress.at(static_cast<double>(frame) / frames, "export");

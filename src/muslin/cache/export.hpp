@@ -11,7 +11,7 @@ namespace muslin {
 
 struct ExportOptions {
   std::string body;                 ///< empty: the only body (.usda: all of them)
-  Surface surface = Surface::skin;  ///< not for .vtu, which shows the lattice
+  SurfaceKind surface = SurfaceKind::skin;  ///< not for .vtu, which shows the lattice
 };
 
 /// Writes the run by the suffix of `file`:

@@ -12,7 +12,7 @@ std::filesystem::path numbered(const std::filesystem::path& file, int frame);
 
 /// glTF 2.0: .glb, or .gltf with its buffer in a .bin beside it. The mesh is that of frame 0; morph target
 /// n − 1 leads to frame n, and linear weights lead from frame to frame.
-void export_gltf(const RunReader& run, const std::filesystem::path& file, int body, Surface surface,
+void export_gltf(const RunReader& run, const std::filesystem::path& file, int body, SurfaceKind surface,
                  const Progress& progress);
 
 /// USD as text: metres, y up, a time code per frame.

@@ -148,7 +148,7 @@ void write_gltf(const fs::path& file, Document& document) {
 
 }  // namespace
 
-void export_gltf(const RunReader& run, const fs::path& file, int body, Surface surface,
+void export_gltf(const RunReader& run, const fs::path& file, int body, SurfaceKind surface,
                  const Progress& progress) {
   const SplitMesh mesh = split(run.mesh(body, surface));
   const std::vector<Vec3f> start = run.points(body, surface, 0);

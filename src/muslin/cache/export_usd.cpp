@@ -100,7 +100,7 @@ void export_usd(const RunReader& run, const fs::path& file, const ExportOptions&
     bodies.push_back(run.find_body(options.body));
   }
   const int frames = run.frame_count();
-  const Surface surface = options.surface;
+  const SurfaceKind surface = options.surface;
   WholeFile out(file);
   out.append(
       fmt::format("#usda 1.0\n(\n    defaultPrim = \"run\"\n    doc = \"{}\"\n    endTimeCode = {}\n"

@@ -45,7 +45,7 @@ struct BodyTracks {
 
 }  // namespace
 
-const char* name_of(Surface surface) { return surface == Surface::skin ? "skin" : "contour"; }
+const char* name_of(SurfaceKind surface) { return surface == SurfaceKind::skin ? "skin" : "contour"; }
 
 struct RunReader::Parts {
   fs::path directory;
@@ -58,8 +58,8 @@ struct RunReader::Parts {
   double frame_rate = 24;
 
   const BodyTracks& body(int index) const { return bodies.at(static_cast<std::size_t>(index)); }
-  const Track& track(int index, Surface surface) const {
-    return surface == Surface::skin ? body(index).skin : body(index).contour;
+  const Track& track(int index, SurfaceKind surface) const {
+    return surface == SurfaceKind::skin ? body(index).skin : body(index).contour;
   }
 };
 
@@ -139,13 +139,13 @@ int RunReader::find_body(const std::string& name) const {
               "choose one with --body: " + known);
 }
 
-const Mesh& RunReader::mesh(int body, Surface surface) const {
-  return surface == Surface::skin ? parts_->body(body).skin_mesh : parts_->body(body).contour_mesh;
+const Mesh& RunReader::mesh(int body, SurfaceKind surface) const {
+  return surface == SurfaceKind::skin ? parts_->body(body).skin_mesh : parts_->body(body).contour_mesh;
 }
-std::vector<Vec3f> RunReader::points(int body, Surface surface, int frame) const {
+std::vector<Vec3f> RunReader::points(int body, SurfaceKind surface, int frame) const {
   return parts_->track(body, surface).at(frame);
 }
-std::vector<Vec3f> RunReader::velocities(int body, Surface surface, int frame) const {
+std::vector<Vec3f> RunReader::velocities(int body, SurfaceKind surface, int frame) const {
   return parts_->track(body, surface).velocities(frame, parts_->frames, parts_->frame_rate);
 }
 const RunReader::LatticeShape& RunReader::lattice(int body) const { return parts_->body(body).shape; }

@@ -15,11 +15,11 @@
 namespace muslin {
 
 /// What a run shows of a body.
-enum class Surface {
+enum class SurfaceKind {
   skin,     ///< the original mesh, carried by the lattice
   contour,  ///< marching squares or cubes on the deformed lattice
 };
-const char* name_of(Surface surface);
+const char* name_of(SurfaceKind surface);
 
 /// A run, finished or not, even while it is being written. Frames 0 … frame_count() − 1 are complete in all
 /// files; the count is taken when the reader is made.
@@ -42,11 +42,11 @@ class RunReader {
   int find_body(const std::string& name) const;
 
   /// The surface at rest as it was written: polygons, UVs, groups.
-  const Mesh& mesh(int body, Surface surface) const;
+  const Mesh& mesh(int body, SurfaceKind surface) const;
   /// Its vertices at a frame, in the same order [m].
-  std::vector<Vec3f> points(int body, Surface surface, int frame) const;
+  std::vector<Vec3f> points(int body, SurfaceKind surface, int frame) const;
   /// Their velocities by central differences over the neighbouring frames, one-sided at the ends [m/s].
-  std::vector<Vec3f> velocities(int body, Surface surface, int frame) const;
+  std::vector<Vec3f> velocities(int body, SurfaceKind surface, int frame) const;
 
   /// The body's lattice: rest positions [m], and voxels with their corners in the order of Lattice.
   struct LatticeShape {

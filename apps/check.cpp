@@ -1,0 +1,36 @@
+// muslin check FILE
+#include <filesystem>
+#include <memory>
+
+#include "command.hpp"
+#include "muslin/muslin.hpp"
+
+namespace muslin::app {
+
+void add_check(CLI::App& program) {
+  struct Arguments {
+    std::string file;
+    bool json = false;
+    std::vector<std::string> set;
+  };
+  auto* command = program.add_subcommand("check", "what is wrong with a scene or mesh, and what will be built");
+  auto a = std::make_shared<Arguments>();
+  command->add_option("FILE", a->file, "scene (.toml) or mesh file")->required();
+  command->add_flag("--json", a->json, "for programs");
+  command->add_option("--set", a->set, "KEY=VALUE overrides a setting of the scene")->allow_extra_args(false);
+  command->callback([a] {
+    listen_for_interrupts();
+    if (std::filesystem::path(a->file).extension() == ".toml") {
+      const Model model = build_model(read_scene(a->file, a->set), {{}, [] { return interrupted(); }});
+      print(a->json ? describe_json(model) : describe_text(model));
+      return;
+    }
+    const MeshFile file = read_mesh(a->file);
+    require_usable(file.mesh, a->file);
+    MeshReport report = inspect(file.mesh);
+    if (!file.note.empty()) report.warnings.push_back(file.note);
+    print(a->json ? describe_json(report, a->file) : describe_text(report, a->file));
+  });
+}
+
+}  // namespace muslin::app

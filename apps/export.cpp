@@ -1,0 +1,33 @@
+// muslin export RUN FILE
+#include <memory>
+
+#include "command.hpp"
+#include "muslin/muslin.hpp"
+#include "progress_line.hpp"
+
+namespace muslin::app {
+
+void add_export(CLI::App& program) {
+  struct Arguments {
+    std::string run, file, body, surface = "skin";
+    bool quiet = false;
+  };
+  auto* command = program.add_subcommand("export", "write a run for other programs");
+  auto a = std::make_shared<Arguments>();
+  command->add_option("RUN", a->run, "run directory")->required();
+  command->add_option("FILE", a->file, "FILE.pc2, .mdd, .obj, .ply, .usda, .glb, .gltf or .vtu; the suffix decides")
+      ->required();
+  command->add_option("--body", a->body, "this body (default: the only one; .usda: all)");
+  command->add_option("--surface", a->surface, "skin (default) or contour")->check(CLI::IsMember({"skin", "contour"}));
+  command->add_flag("--quiet", a->quiet, "no progress");
+  command->callback([a] {
+    listen_for_interrupts();
+    ProgressLine line(a->quiet);
+    ExportOptions options;
+    options.body = a->body;
+    options.surface = a->surface == "contour" ? SurfaceKind::contour : SurfaceKind::skin;
+    export_run(RunReader(a->run), a->file, options, line.progress());
+  });
+}
+
+}  // namespace muslin::app

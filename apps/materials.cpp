@@ -1,0 +1,50 @@
+// muslin materials [NAME]
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "command.hpp"
+#include "muslin/muslin.hpp"
+
+namespace muslin::app {
+namespace {
+
+std::string table() {
+  std::string text = fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}  {}\n", "name", "density", "edge", "face diag.",
+                                 "body diag.", "what it is");
+  text += fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}\n", "", "kg/m3", "N/m2", "N/m2", "N/m2");
+  for (const std::string& name : material_names()) {
+    const Material m = find_material(name);
+    text += fmt::format("{:<14} {:>9.4g} {:>11.4g} {:>11.4g} {:>11.4g}  {}\n", name, m.density, m.edge_modulus,
+                        m.face_diagonal_modulus, m.body_diagonal_modulus, m.description);
+  }
+  return text;
+}
+
+std::string page(const Material& m) {
+  std::string text = fmt::format("{}: {}\n\n", m.name, m.description);
+  const auto row = [&](const char* what, double value, const char* unit) {
+    text += fmt::format("  {:<24} {:>12.6g} {}\n", what, value, unit);
+  };
+  row("density", m.density, "kg/m3");
+  row("edge_modulus", m.edge_modulus, "N/m2");
+  row("face_diagonal_modulus", m.face_diagonal_modulus, "N/m2");
+  row("body_diagonal_modulus", m.body_diagonal_modulus, "N/m2");
+  row("volume_modulus", m.volume_modulus, "N/m2");
+  row("mass_damping", m.mass_damping, "1/s");
+  row("stiffness_damping", m.stiffness_damping, "s");
+  if (!m.reference.empty()) text += "\nreference (SI):\n";
+  for (const auto& [what, value] : m.reference) text += fmt::format("  {:<24} {:>12.6g}\n", what, value);
+  return text + "\nsource: " + m.source + "\n";
+}
+
+}  // namespace
+
+void add_materials(CLI::App& program) {
+  auto* command = program.add_subcommand("materials", "list the materials, or show one with its sources");
+  auto name = std::make_shared<std::string>();
+  command->add_option("NAME", *name, "material");
+  command->callback([name] { print(name->empty() ? table() : page(find_material(*name))); });
+}
+
+}  // namespace muslin::app

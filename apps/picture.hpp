@@ -1,0 +1,39 @@
+// From a run directory to pictures: what surfaces look like, where the camera stands, which plots there are.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "muslin/muslin.hpp"
+
+namespace muslin::app {
+
+struct PictureOptions {
+  std::string body;  ///< empty: all
+  SurfaceKind surface = SurfaceKind::skin;
+  bool stretch = false;                ///< stretch as colours
+  std::optional<double> stretch_max;   ///< [%] upper end of the colour scale
+  bool ground = true;
+  CameraOptions camera;
+  RenderOptions render;
+};
+
+/// Draws frames of one run, all from one place.
+class RunPictures {
+ public:
+  RunPictures(RunReader run, const PictureOptions& options, const Progress& progress);
+  ~RunPictures();
+  int frame_count() const;
+  double frame_rate() const;
+  Image draw(int frame);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// energy.svg, energy.png, stretch.svg, stretch.png in the run directory.
+void write_run_plots(const RunReader& run);
+
+}  // namespace muslin::app

@@ -1,0 +1,78 @@
+// muslin run SCENE.toml
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "command.hpp"
+#include "muslin/muslin.hpp"
+#include "picture.hpp"
+#include "progress_line.hpp"
+
+namespace muslin::app {
+namespace {
+
+struct RunArguments {
+  std::string scene;
+  std::string directory;
+  int frames = -1;
+  int threads = 0;
+  bool resume = false;
+  bool quiet = false;
+  std::vector<std::string> set;
+};
+
+void run(const RunArguments& arguments) {
+  listen_for_interrupts();
+  set_thread_count(arguments.threads);
+  RunOptions options;
+  options.directory = arguments.directory.empty()
+                          ? std::filesystem::path("out") / std::filesystem::path(arguments.scene).stem()
+                          : std::filesystem::path(arguments.directory);
+  options.overrides = arguments.set;
+  options.frames = arguments.frames;
+  options.resume = arguments.resume;
+  options.cancelled = [] { return interrupted(); };
+  RunResult result;
+  {
+    ProgressLine line(arguments.quiet);
+    options.report = [&](const RunProgress& progress) {
+      const std::string frame =
+          progress.stage == "simulation" ? fmt::format("frame {} of {}", progress.frame, progress.total) : progress.stage;
+      line.show(progress.fraction, frame);
+    };
+    try {
+      result = run_scene(arguments.scene, options);
+    } catch (const Error& error) {
+      line.finish();
+      if (error.kind() != ErrorKind::interrupted) throw;
+      throw Error(ErrorKind::interrupted, error.problem(),
+                  fmt::format("go on with: muslin run {} -o {} --resume", arguments.scene, options.directory.string()));
+    }
+  }
+  for (const std::string& warning : result.warnings) std::fprintf(stderr, "muslin: warning: %s\n", warning.c_str());
+  for (const std::string& change : result.changes) std::fprintf(stderr, "muslin: resumed with %s\n", change.c_str());
+  write_run_plots(RunReader(options.directory));
+  if (!arguments.quiet)
+    print(fmt::format("{}: frames {} to {}\n", options.directory.string(), result.first_frame, result.last_frame));
+}
+
+}  // namespace
+
+void add_run(CLI::App& program) {
+  auto* command = program.add_subcommand("run", "simulate a scene and write its run directory");
+  auto arguments = std::make_shared<RunArguments>();
+  command->add_option("SCENE", arguments->scene, "scene file (.toml)")->required();
+  command->add_option("-o,--output", arguments->directory, "run directory (default: out/SCENE)");
+  command->add_option("--frames", arguments->frames, "last frame (default: as the scene says)")
+      ->check(non_negative_integer());
+  command->add_option("--threads", arguments->threads, "threads (default: one per core); the result is the same")
+      ->check(non_negative_integer());
+  command->add_flag("--resume", arguments->resume, "go on from the last checkpoint");
+  command->add_option("--set", arguments->set, "KEY=VALUE overrides a setting, e.g. time.duration=2")
+      ->allow_extra_args(false);
+  command->add_flag("--quiet", arguments->quiet, "no progress, only errors and warnings");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace muslin::app

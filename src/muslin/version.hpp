@@ -1,0 +1,8 @@
+// The version of the library, MAJOR.MINOR.PATCH.
+#pragma once
+
+namespace muslin {
+
+const char* version();
+
+}  // namespace muslin
