@@ -2,8 +2,9 @@
 #include <memory>
 
 #include "command.hpp"
-#include "muslin/muslin.hpp"
 #include "progress_line.hpp"
+
+#include "muslin/muslin.hpp"
 
 namespace muslin::app {
 
@@ -18,7 +19,8 @@ void add_build(CLI::App& program) {
   auto a = std::make_shared<Arguments>();
   command->add_option("SCENE", a->scene, "scene file (.toml)")->required();
   command->add_option("-o,--output", a->directory, "folder for the stages")->required();
-  command->add_option("--threads", a->threads, "threads (default: one per core)")->check(non_negative_integer());
+  command->add_option("--threads", a->threads, "threads (default: one per core)")
+      ->check(non_negative_integer());
   command->add_option("--set", a->set, "KEY=VALUE overrides a setting")->allow_extra_args(false);
   command->add_flag("--quiet", a->quiet, "no progress");
   command->callback([a] {
@@ -26,7 +28,8 @@ void add_build(CLI::App& program) {
     set_thread_count(a->threads);
     ProgressLine line(a->quiet);
     const Model model = build_model(read_scene(a->scene, a->set), line.progress());
-    for (const std::string& warning : model.warnings) std::fprintf(stderr, "muslin: warning: %s\n", warning.c_str());
+    for (const std::string& warning : model.warnings)
+      std::fprintf(stderr, "muslin: warning: %s\n", warning.c_str());
     write_stages(a->directory, model, line.progress());
     line.finish();
     if (!a->quiet) print(describe_text(model));

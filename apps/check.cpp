@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "command.hpp"
+
 #include "muslin/muslin.hpp"
 
 namespace muslin::app {
@@ -13,7 +14,8 @@ void add_check(CLI::App& program) {
     bool json = false;
     std::vector<std::string> set;
   };
-  auto* command = program.add_subcommand("check", "what is wrong with a scene or mesh, and what will be built");
+  auto* command =
+      program.add_subcommand("check", "what is wrong with a scene or mesh, and what will be built");
   auto a = std::make_shared<Arguments>();
   command->add_option("FILE", a->file, "scene (.toml) or mesh file")->required();
   command->add_flag("--json", a->json, "for programs");

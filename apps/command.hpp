@@ -2,8 +2,9 @@
 // line is parsed, and errors leave as muslin::Error.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+#include <CLI/CLI.hpp>
 
 namespace muslin::app {
 

@@ -2,8 +2,9 @@
 #include <memory>
 
 #include "command.hpp"
-#include "muslin/muslin.hpp"
 #include "progress_line.hpp"
+
+#include "muslin/muslin.hpp"
 
 namespace muslin::app {
 
@@ -15,10 +16,13 @@ void add_export(CLI::App& program) {
   auto* command = program.add_subcommand("export", "write a run for other programs");
   auto a = std::make_shared<Arguments>();
   command->add_option("RUN", a->run, "run directory")->required();
-  command->add_option("FILE", a->file, "FILE.pc2, .mdd, .obj, .ply, .usda, .glb, .gltf or .vtu; the suffix decides")
+  command
+      ->add_option("FILE", a->file,
+                   "FILE.pc2, .mdd, .obj, .ply, .usda, .glb, .gltf or .vtu; the suffix decides")
       ->required();
   command->add_option("--body", a->body, "this body (default: the only one; .usda: all)");
-  command->add_option("--surface", a->surface, "skin (default) or contour")->check(CLI::IsMember({"skin", "contour"}));
+  command->add_option("--surface", a->surface, "skin (default) or contour")
+      ->check(CLI::IsMember({"skin", "contour"}));
   command->add_flag("--quiet", a->quiet, "no progress");
   command->callback([a] {
     listen_for_interrupts();

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "command.hpp"
+
 #include "muslin/muslin.hpp"
 
 namespace muslin::app {
@@ -19,8 +20,10 @@ void add_field(CLI::App& program) {
   command->add_option("--voxel-width", arguments->voxel_width, "distance between samples [m]")
       ->required()
       ->check(positive_number());
-  command->add_option("--slice", arguments->slice, "plane, e.g. z=0 (default: the middle, across the thinnest axis)");
-  command->add_option("--margin", arguments->margin, "rings of samples outside the mesh: N or X,Y,Z (default: 1)");
+  command->add_option("--slice", arguments->slice,
+                      "plane, e.g. z=0 (default: the middle, across the thinnest axis)");
+  command->add_option("--margin", arguments->margin,
+                      "rings of samples outside the mesh: N or X,Y,Z (default: 1)");
   command->add_option("--thickness", arguments->thickness, "of an open mesh [m] (default: one voxel width)")
       ->check(non_negative_number());
   command->add_flag("--csv", arguments->csv, "x,y,z,distance with all digits");

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "command.hpp"
+
 #include "muslin/core/error.hpp"
 #include "muslin/version.hpp"
 
@@ -50,7 +51,7 @@ int run(int argc, char** argv) {
   add_render(program);
   add_export(program);
   add_materials(program);
-  
+
   try {
     program.parse(argc, argv);
     return 0;

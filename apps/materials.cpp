@@ -1,22 +1,22 @@
 // muslin materials [NAME]
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "command.hpp"
+#include <fmt/format.h>
+
 #include "muslin/muslin.hpp"
 
 namespace muslin::app {
 namespace {
 
 std::string table() {
-  std::string text = fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}  {}\n", "name", "density", "edge", "face diag.",
-                                 "body diag.", "what it is");
+  std::string text = fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}  {}\n", "name", "density", "edge",
+                                 "face diag.", "body diag.", "what it is");
   text += fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}\n", "", "kg/m3", "N/m2", "N/m2", "N/m2");
   for (const std::string& name : material_names()) {
     const Material m = find_material(name);
-    text += fmt::format("{:<14} {:>9.4g} {:>11.4g} {:>11.4g} {:>11.4g}  {}\n", name, m.density, m.edge_modulus,
-                        m.face_diagonal_modulus, m.body_diagonal_modulus, m.description);
+    text += fmt::format("{:<14} {:>9.4g} {:>11.4g} {:>11.4g} {:>11.4g}  {}\n", name, m.density,
+                        m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus, m.description);
   }
   return text;
 }

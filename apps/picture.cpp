@@ -1,17 +1,19 @@
 #include "picture.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 namespace muslin::app {
 namespace {
 
-const std::array<Vec3, 5> body_colours = {Vec3(0.72, 0.20, 0.17), Vec3(0.16, 0.42, 0.62), Vec3(0.82, 0.60, 0.20),
-                                          Vec3(0.30, 0.52, 0.32), Vec3(0.50, 0.34, 0.58)};
+const std::array<Vec3, 5> body_colours = {Vec3(0.72, 0.20, 0.17), Vec3(0.16, 0.42, 0.62),
+                                          Vec3(0.82, 0.60, 0.20), Vec3(0.30, 0.52, 0.32),
+                                          Vec3(0.50, 0.34, 0.58)};
 
 /// The edges of a mesh at rest: what stretch is measured on.
 class EdgeStretch {
@@ -24,7 +26,8 @@ class EdgeStretch {
         const int a = std::min(corners[c], corners[(c + 1) % corners.size()]);
         const int b = std::max(corners[c], corners[(c + 1) % corners.size()]);
         const double length =
-            (mesh.positions[static_cast<std::size_t>(a)] - mesh.positions[static_cast<std::size_t>(b)]).norm();
+            (mesh.positions[static_cast<std::size_t>(a)] - mesh.positions[static_cast<std::size_t>(b)])
+                .norm();
         if (length > 0) edges[{a, b}] = length;
       }
     }
@@ -47,6 +50,21 @@ class EdgeStretch {
   std::vector<std::pair<std::pair<int, int>, double>> edges_;
 };
 
+/// As the scene says, else from the palette.
+std::vector<Vec3> colours_of(const RunReader& run) {
+  std::vector<Vec3> colours;
+  const auto scene = nlohmann::json::parse(run.resolved_scene());
+  for (std::size_t b = 0; b < run.bodies().size(); ++b) {
+    Vec3 colour = body_colours[b % body_colours.size()];
+    if (scene.contains("body") && b < scene["body"].size() && scene["body"][b].contains("colour")) {
+      const auto& rgb = scene["body"][b]["colour"];
+      colour = Vec3(rgb[0].get<double>(), rgb[1].get<double>(), rgb[2].get<double>());
+    }
+    colours.push_back(colour);
+  }
+  return colours;
+}
+
 std::vector<Vec3> in_double(const std::vector<Vec3f>& points) {
   std::vector<Vec3> result;
   result.reserve(points.size());
@@ -65,7 +83,8 @@ double round_up(double value) {
 }  // namespace
 
 struct RunPictures::Parts {
-  Parts(RunReader reader, const PictureOptions& picture_options) : run(std::move(reader)), options(picture_options) {}
+  Parts(RunReader reader, const PictureOptions& picture_options)
+      : run(std::move(reader)), options(picture_options) {}
 
   RunReader run;
   PictureOptions options;
@@ -73,7 +92,9 @@ struct RunPictures::Parts {
   std::vector<EdgeStretch> stretch;
   std::unique_ptr<Raytracer> tracer;
 
-  std::vector<Vec3> points(int body, int frame) const { return in_double(run.points(body, options.surface, frame)); }
+  std::vector<Vec3> points(int body, int frame) const {
+    return in_double(run.points(body, options.surface, frame));
+  }
 };
 
 RunPictures::RunPictures(RunReader run, const PictureOptions& options, const Progress& progress)
@@ -84,14 +105,15 @@ RunPictures::RunPictures(RunReader run, const PictureOptions& options, const Pro
   else
     p.bodies.push_back(p.run.find_body(options.body));
   SceneView scene;
+  const std::vector<Vec3> colours = colours_of(p.run);
   for (int body : p.bodies) {
     const Mesh& mesh = p.run.mesh(body, options.surface);
-    const Vec3& colour = body_colours[static_cast<std::size_t>(body) % body_colours.size()];
+    const Vec3& colour = colours[static_cast<std::size_t>(body)];
     scene.surfaces.push_back(make_surface(mesh, is_closed(mesh) ? solid_look(colour) : fabric_look(colour)));
     if (options.stretch) p.stretch.emplace_back(mesh);
   }
   CameraFit fit(options.camera, static_cast<double>(options.render.width) / options.render.height);
-  double lowest = std::numeric_limits<double>::infinity(), largest_stretch = 0;
+  double largest_stretch = 0;
   Box bounds;
   for (int frame = 0; frame < frame_count(); ++frame) {
     progress.at(static_cast<double>(frame) / frame_count(), "looking for the view");
@@ -103,8 +125,7 @@ RunPictures::RunPictures(RunReader run, const PictureOptions& options, const Pro
         for (double percent : p.stretch[b].at(x)) largest_stretch = std::max(largest_stretch, percent);
     }
   }
-  lowest = bounds.min().y();
-  if (options.ground) scene.ground = lowest - 0.04 * bounds.diagonal().norm();
+  if (options.ground) scene.ground = bounds.min().y() - 0.02 * bounds.diagonal().norm();
   if (options.stretch) {
     ColourScale scale;
     scale.high = options.stretch_max ? *options.stretch_max : round_up(largest_stretch);

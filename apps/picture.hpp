@@ -12,11 +12,11 @@ namespace muslin::app {
 struct PictureOptions {
   std::string body;  ///< empty: all
   SurfaceKind surface = SurfaceKind::skin;
-  bool stretch = false;                ///< stretch as colours
-  std::optional<double> stretch_max;   ///< [%] upper end of the colour scale
+  bool stretch = false;               ///< stretch as colours
+  std::optional<double> stretch_max;  ///< [%] upper end of the colour scale
   bool ground = true;
   CameraOptions camera;
-  RenderOptions render;
+  RenderOptions render = {.width = 960, .height = 540, .samples = 4};
 };
 
 /// Draws frames of one run, all from one place.

@@ -1,12 +1,11 @@
 #include "progress_line.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 
 #include "command.hpp"
+#include <fmt/format.h>
+#include <unistd.h>
 
 namespace muslin::app {
 namespace {
@@ -52,7 +51,8 @@ void ProgressLine::show(double fraction, std::string_view text) {
     left = duration(elapsed);
   else if (done > 0 && elapsed > 0.5)
     left = duration(elapsed / done * (1 - fraction)) + " left";
-  const std::string line = fmt::format("{:3.0f} %  {}{}{}", 100 * fraction, text, left.empty() ? "" : "  ", left);
+  const std::string line =
+      fmt::format("{:3.0f} %  {}{}{}", 100 * fraction, text, left.empty() ? "" : "  ", left);
   if (terminal_) {
     std::fprintf(stderr, "\r\033[K%s", line.c_str());
     drawn_ = true;
@@ -63,7 +63,8 @@ void ProgressLine::show(double fraction, std::string_view text) {
 }
 
 Progress ProgressLine::progress() {
-  return {[this](double fraction, std::string_view stage) { show(fraction, stage); }, [] { return interrupted(); }};
+  return {[this](double fraction, std::string_view stage) { show(fraction, stage); },
+          [] { return interrupted(); }};
 }
 
 }  // namespace muslin::app

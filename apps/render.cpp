@@ -1,18 +1,17 @@
 // muslin render RUN
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <memory>
 
 #include "command.hpp"
 #include "picture.hpp"
 #include "progress_line.hpp"
+#include <fmt/format.h>
 
 namespace muslin::app {
 namespace {
 
 struct RenderArguments {
-  std::string run, output, surface = "skin", size = "1280x720";
+  std::string run, output, surface = "skin", size = "960x540";
   int frame = -1;
   int threads = 0;
   bool quiet = false, no_ground = false;
@@ -42,7 +41,8 @@ void render(RenderArguments arguments) {
       arguments.output.empty() ? fs::path(arguments.run) / "movie.mp4" : fs::path(arguments.output);
   const std::string suffix = output.extension().string();
   if (!suffix.empty() && suffix != ".mp4" && suffix != ".png")
-    throw Error(ErrorKind::usage, "cannot write '" + suffix + "' pictures", "name a .mp4, a .png or a folder");
+    throw Error(ErrorKind::usage, "cannot write '" + suffix + "' pictures",
+                "name a .mp4, a .png or a folder");
   RunReader reader(arguments.run);
   const int count = reader.frame_count();
   const bool one = suffix == ".png";
@@ -73,18 +73,26 @@ void add_render(CLI::App& program) {
   auto* command = program.add_subcommand("render", "draw a run: a movie, frames, or one picture");
   auto a = std::make_shared<RenderArguments>();
   command->add_option("RUN", a->run, "run directory")->required();
-  command->add_option("-o,--output", a->output, "FILE.mp4, FILE.png or a folder of frames (default: RUN/movie.mp4)");
-  command->add_option("--frame", a->frame, "the frame of a .png (default: the last)")->check(non_negative_integer());
+  command->add_option("-o,--output", a->output,
+                      "FILE.mp4, FILE.png or a folder of frames (default: RUN/movie.mp4)");
+  command->add_option("--frame", a->frame, "the frame of a .png (default: the last)")
+      ->check(non_negative_integer());
   command->add_option("--body", a->picture.body, "only this body");
-  command->add_option("--surface", a->surface, "skin (default) or contour")->check(CLI::IsMember({"skin", "contour"}));
+  command->add_option("--surface", a->surface, "skin (default) or contour")
+      ->check(CLI::IsMember({"skin", "contour"}));
   command->add_flag("--stretch", a->picture.stretch, "show stretch as colours");
-  command->add_option("--stretch-max", a->stretch_max, "upper end of the stretch colours [%]")->check(positive_number());
-  command->add_option("--size", a->size, "WIDTHxHEIGHT in pixels (default: 1280x720)");
-  command->add_option("--samples", a->picture.render.samples, "rays a pixel (default: 8)")->check(positive_integer());
-  command->add_option("--azimuth", a->picture.camera.azimuth, "camera, degrees from +z towards +x (default: 30)");
-  command->add_option("--elevation", a->picture.camera.elevation, "camera, degrees above the horizon (default: 15)");
+  command->add_option("--stretch-max", a->stretch_max, "upper end of the stretch colours [%]")
+      ->check(positive_number());
+  command->add_option("--size", a->size, "WIDTHxHEIGHT in pixels (default: 960x540)");
+  command->add_option("--samples", a->picture.render.samples, "rays a pixel (default: 4)")
+      ->check(positive_integer());
+  command->add_option("--azimuth", a->picture.camera.azimuth,
+                      "camera, degrees from +z towards +x (default: 30)");
+  command->add_option("--elevation", a->picture.camera.elevation,
+                      "camera, degrees above the horizon (default: 15)");
   command->add_flag("--no-ground", a->no_ground, "no ground below");
-  command->add_option("--threads", a->threads, "threads (default: one per core)")->check(non_negative_integer());
+  command->add_option("--threads", a->threads, "threads (default: one per core)")
+      ->check(non_negative_integer());
   command->add_flag("--quiet", a->quiet, "no progress");
   command->callback([a] { render(*a); });
 }

@@ -1,13 +1,13 @@
 // muslin run SCENE.toml
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <memory>
 
 #include "command.hpp"
-#include "muslin/muslin.hpp"
 #include "picture.hpp"
 #include "progress_line.hpp"
+#include <fmt/format.h>
+
+#include "muslin/muslin.hpp"
 
 namespace muslin::app {
 namespace {
@@ -37,8 +37,9 @@ void run(const RunArguments& arguments) {
   {
     ProgressLine line(arguments.quiet);
     options.report = [&](const RunProgress& progress) {
-      const std::string frame =
-          progress.stage == "simulation" ? fmt::format("frame {} of {}", progress.frame, progress.total) : progress.stage;
+      const std::string frame = progress.stage == "simulation"
+                                    ? fmt::format("frame {} of {}", progress.frame, progress.total)
+                                    : progress.stage;
       line.show(progress.fraction, frame);
     };
     try {
@@ -47,14 +48,18 @@ void run(const RunArguments& arguments) {
       line.finish();
       if (error.kind() != ErrorKind::interrupted) throw;
       throw Error(ErrorKind::interrupted, error.problem(),
-                  fmt::format("go on with: muslin run {} -o {} --resume", arguments.scene, options.directory.string()));
+                  fmt::format("go on with: muslin run {} -o {} --resume", arguments.scene,
+                              options.directory.string()));
     }
   }
-  for (const std::string& warning : result.warnings) std::fprintf(stderr, "muslin: warning: %s\n", warning.c_str());
-  for (const std::string& change : result.changes) std::fprintf(stderr, "muslin: resumed with %s\n", change.c_str());
+  for (const std::string& warning : result.warnings)
+    std::fprintf(stderr, "muslin: warning: %s\n", warning.c_str());
+  for (const std::string& change : result.changes)
+    std::fprintf(stderr, "muslin: resumed with %s\n", change.c_str());
   write_run_plots(RunReader(options.directory));
   if (!arguments.quiet)
-    print(fmt::format("{}: frames {} to {}\n", options.directory.string(), result.first_frame, result.last_frame));
+    print(fmt::format("{}: frames {} to {}\n", options.directory.string(), result.first_frame,
+                      result.last_frame));
 }
 
 }  // namespace
@@ -66,7 +71,8 @@ void add_run(CLI::App& program) {
   command->add_option("-o,--output", arguments->directory, "run directory (default: out/SCENE)");
   command->add_option("--frames", arguments->frames, "last frame (default: as the scene says)")
       ->check(non_negative_integer());
-  command->add_option("--threads", arguments->threads, "threads (default: one per core); the result is the same")
+  command
+      ->add_option("--threads", arguments->threads, "threads (default: one per core); the result is the same")
       ->check(non_negative_integer());
   command->add_flag("--resume", arguments->resume, "go on from the last checkpoint");
   command->add_option("--set", arguments->set, "KEY=VALUE overrides a setting, e.g. time.duration=2")

@@ -1,7 +1,7 @@
-#include "command.hpp"
-
 #include <cmath>
 #include <cstdlib>
+
+#include "command.hpp"
 
 namespace muslin::app {
 namespace {

@@ -150,6 +150,12 @@ BodySettings read_body(const TomlValue& value, std::size_t index, const std::fil
   body.rotate = table.vector("rotate", "degrees", Vec3::Zero());
   body.scale = read_scale(table);
   body.velocity = table.vector("velocity", "m/s", Vec3::Zero());
+  if (table.has("colour")) {
+    body.colour = table.vector("colour", "sRGB 0 to 1");
+    if (body.colour->minCoeff() < 0 || body.colour->maxCoeff() > 1)
+      throw table.error("colour", "a colour is red, green and blue from 0 to 1",
+                        "write for example [0.2, 0.5, 0.2]");
+  }
   return body;
 }
 

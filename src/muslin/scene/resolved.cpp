@@ -61,6 +61,7 @@ Json body(const BodySettings& b) {
   json["rotate"] = vector(b.rotate);
   json["scale"] = vector(b.scale);
   json["velocity"] = vector(b.velocity);
+  if (b.colour) json["colour"] = vector(*b.colour);
   return json;
 }
 

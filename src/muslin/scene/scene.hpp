@@ -73,6 +73,7 @@ struct BodySettings {
   Vec3 rotate = Vec3::Zero();     ///< Euler angles about x, then y, then z [degrees]
   Vec3 scale = Vec3::Ones();
   Vec3 velocity = Vec3::Zero();  ///< initial [m/s]
+  std::optional<Vec3> colour;    ///< in pictures, sRGB 0…1; default: one of a palette
   Place place;
 };
 

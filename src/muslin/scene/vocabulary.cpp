@@ -27,7 +27,7 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
       {"solver", {"integrator", "tolerance", "max_iterations", "linear_tolerance"}},
       {"body",
        {"name", "mesh", "model", "thickness", "voxel_width", "voxels", "threshold", "bracing", "mass",
-        "boundary_springs", "material", "translate", "rotate", "scale", "velocity"}},
+        "boundary_springs", "material", "translate", "rotate", "scale", "velocity", "colour"}},
       {"body.material", with_materials({"base", "youngs_modulus", "shear_modulus"})},
       {"where", {"group", "box", "sphere", "plane", "line", "nearest"}},
       {"where.sphere", {"center", "radius"}},
