@@ -32,5 +32,8 @@ tidy:             ## clang-tidy over the sources
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
 
+pictures: build   ## the pictures of the README; `tools/make_pictures --movies` films every scene
+	tools/make_pictures $(BUILD)/muslin
+
 clean:
 	rm -rf build out
