@@ -1,0 +1,49 @@
+// The bodies that speeds are measured on: the thesis's flag at several resolutions, and a cube.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/lattice_box.hpp"
+#include "support/simple_potentials.hpp"
+#include "textbook.hpp"
+
+#include "muslin/energy/spring_energy.hpp"
+#include "muslin/solver/solver.hpp"
+
+namespace muslin::bench {
+
+/// One body at the beginning of one step. Springs of 20000/100/100 N/m² × voxel width and 10 kg/m³ at every
+/// resolution, so that a finer lattice is the same body cut finer: k dt²/m grows with 1/width².
+struct Problem {
+  std::string name;
+  double dt = 0;
+  Lattice lattice;
+  Springs lattice_springs;
+  std::vector<double> masses;
+  std::vector<std::uint8_t> fixed;
+  std::shared_ptr<const SpringEnergy> springs;
+  std::shared_ptr<const test::UniformGravity> gravity;
+  State state;
+
+  StepProblem step_problem() const {
+    return {masses, {springs.get(), gravity.get()}, fixed, state.positions};
+  }
+  TextbookProblem textbook() const;
+  /// Largest k dt² / m of an edge inside the body.
+  double stiffness_number() const;
+};
+
+struct ProblemSettings {
+  std::string name;
+  Vec3i extent;
+  double width = 1;  ///< [m]
+  double dt = 1.0 / 240;
+  bool crumpled = false;  ///< a smooth random perturbation of the rest shape, at rest
+  int steps = 20;         ///< taken before the measured one, hanging from two corners of the top
+};
+
+Problem make_problem(const ProblemSettings& settings);
+
+}  // namespace muslin::bench
