@@ -5,6 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "muslin/core/parallel.hpp"
+#include "muslin/core/vector_code.hpp"
+#include "muslin/potential/linearization.hpp"
+
 namespace muslin {
 namespace {
 
@@ -73,6 +77,34 @@ Vec3 difference(ConstVectors x, const SpringPiece& piece, int i) {
   return x[static_cast<std::size_t>(piece.b + i)] - x[static_cast<std::size_t>(piece.a + i)];
 }
 
+/// Runs of one b − a that are less than this many vertices apart become one: springs that are not there cost
+/// as little as those that are, short loops cost more.
+constexpr int shortest_run = 64;
+constexpr int longest_gap = 8;
+
+/// Runs with a < b, by direction and then by a, close ones joined.
+std::vector<CouplingRun> coupling_runs(const Springs& springs) {
+  std::vector<CouplingRun> runs;
+  for (const SpringRun& run : springs.runs) {
+    const Vec3i& offset = springs.directions[static_cast<std::size_t>(run.direction)].offset;
+    int axis = -1;
+    for (int c = 0; c < 3; ++c)
+      if (offset.cwiseAbs().sum() == 1 && offset[c] != 0) axis = c;
+    const int a = std::min(run.a, run.b), b = std::max(run.a, run.b);
+    if (!runs.empty()) {
+      CouplingRun& last = runs.back();
+      const int gap = a - last.a - last.length;
+      if (last.kind == run.direction && last.b - last.a == b - a && gap >= 0 && gap <= longest_gap &&
+          run.length < shortest_run) {
+        last.length += gap + run.length;
+        continue;
+      }
+    }
+    runs.push_back({run.direction, axis, a, b, run.length});
+  }
+  return runs;
+}
+
 }  // namespace
 
 SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::array<double, 3>& moduli,
@@ -83,6 +115,29 @@ SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::arra
   for (const SpringDirection& direction : springs.directions) {
     types_.push_back({width * direction.offset.cast<double>().norm(),
                       width * moduli[static_cast<std::size_t>(direction.kind)]});
+  }
+  int vertex_count = 0;
+  for (const SpringRun& run : springs.runs)
+    vertex_count = std::max({vertex_count, run.a + run.length, run.b + run.length});
+  pattern_ = std::make_shared<const CouplingPattern>(coupling_runs(springs), vertex_count);
+  if (weights_.empty() && pattern_->slot_count() == count_) return;
+  slot_weights_.assign(static_cast<std::size_t>(pattern_->slot_count()), 0.0F);
+  std::vector<std::vector<const CouplingPiece*>> pieces(types_.size());  // by kind, then a
+  for (const CouplingPiece& piece : pattern_->pieces())
+    pieces[static_cast<std::size_t>(piece.kind)].push_back(&piece);
+  for (auto& of_kind : pieces)
+    std::sort(of_kind.begin(), of_kind.end(), [](const auto* p, const auto* q) { return p->a < q->a; });
+  for (const SpringRun& run : springs.runs) {
+    const auto& of_kind = pieces[static_cast<std::size_t>(run.direction)];
+    const int a = std::min(run.a, run.b);
+    auto piece = std::upper_bound(of_kind.begin(), of_kind.end(), a,
+                                  [](int v, const CouplingPiece* p) { return v < p->a; }) -
+                 1;
+    for (int i = 0; i < run.length; ++i) {
+      while (a + i >= (*piece)->a + (*piece)->length) ++piece;
+      slot_weights_[static_cast<std::size_t>((*piece)->slot + a + i - (*piece)->a)] =
+          weights_.empty() ? 1.0F : weights_[static_cast<std::size_t>(run.first + i)];
+    }
   }
 }
 
@@ -121,6 +176,86 @@ void SpringEnergy::add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) c
     Mat3 block = ((c.axial - transverse) * c.n) * c.n.transpose();
     block.diagonal().array() += transverse;
     return block;
+  });
+}
+
+namespace {
+
+/// Vectors between the ends of a piece's springs, in float.
+MUSLIN_VECTOR_CODE void edge_vectors(const double* __restrict a, const double* __restrict b, int n,
+                                     float* __restrict zx, float* __restrict zy, float* __restrict zz) {
+  for (int i = 0; i < n; ++i) {
+    zx[i] = static_cast<float>(b[3 * i] - a[3 * i]);
+    zy[i] = static_cast<float>(b[3 * i + 1] - a[3 * i + 1]);
+    zz[i] = static_cast<float>(b[3 * i + 2] - a[3 * i + 2]);
+  }
+}
+
+/// B = k ((r/|z|) n nᵀ + (1 − r/|z|) I): s = √(k r/|z|) n and t = k (1 − r/|z|), from z in s.
+MUSLIN_VECTOR_CODE void spring_couplings(float k, float rest, const float* __restrict weight, int n,
+                                         float* __restrict sx, float* __restrict sy, float* __restrict sz,
+                                         float* __restrict t) {
+  const float least = static_cast<float>(shortest) * rest;
+  for (int i = 0; i < n; ++i) {
+    const float square = sx[i] * sx[i] + sy[i] * sy[i] + sz[i] * sz[i];
+    const float length = std::sqrt(square);
+    const bool collapsed = !(length > least);
+    const float k_i = weight != nullptr ? k * weight[i] : k;
+    const float ratio = collapsed ? 0.0F : rest / length;
+    const float scale = collapsed ? 0.0F : std::sqrt(k_i * ratio) / length;
+    sx[i] *= scale, sy[i] *= scale, sz[i] *= scale;
+    t[i] = k_i * (1.0F - ratio);
+  }
+}
+
+/// Adds (c w) n nᵀ to couplings along n ∥ s: s grows to √(|s|² + c w) n. Where s is zero, n is that of z.
+void add_dashpots(float c, const float* weight, int n, const float* zx, const float* zy, const float* zz,
+                  float* sx, float* sy, float* sz) {
+  for (int i = 0; i < n; ++i) {
+    const float extra = weight != nullptr ? c * weight[i] : c;
+    const float square = sx[i] * sx[i] + sy[i] * sy[i] + sz[i] * sz[i];
+    if (square > 0) {
+      const float scale = std::sqrt(1 + extra / square);
+      sx[i] *= scale, sy[i] *= scale, sz[i] *= scale;
+      continue;
+    }
+    const float length = std::sqrt(zx[i] * zx[i] + zy[i] * zy[i] + zz[i] * zz[i]);
+    const float scale = length > 0 ? std::sqrt(extra) / length : 0.0F;
+    sx[i] = scale * zx[i], sy[i] = scale * zy[i], sz[i] = scale * zz[i];
+  }
+}
+
+struct PieceBuffers {
+  alignas(64) float zx[CouplingPattern::block_size], zy[CouplingPattern::block_size],
+      zz[CouplingPattern::block_size];
+  alignas(64) float sx[CouplingPattern::block_size], sy[CouplingPattern::block_size],
+      sz[CouplingPattern::block_size], t[CouplingPattern::block_size];
+};
+
+template <class Body>
+void for_each_piece(const CouplingPattern& pattern, const Body& body) {
+  parallel_for(pattern.slabs().size(), 1, [&](std::size_t begin, std::size_t end) {
+    PieceBuffers buffers;
+    for (int p = pattern.first_piece()[begin]; p < pattern.first_piece()[end]; ++p)
+      body(pattern.pieces()[static_cast<std::size_t>(p)], buffers);
+  });
+}
+
+const float* weights_of(const SpringEnergy& springs, const CouplingPiece& piece) {
+  return springs.slot_weights().empty() ? nullptr : springs.slot_weights().data() + piece.slot;
+}
+
+}  // namespace
+
+void SpringEnergy::linearize(ConstVectors x, Linearization& into, std::size_t first) const {
+  Couplings& couplings = into.couplings(pattern_, first);
+  for_each_piece(*pattern_, [&](const CouplingPiece& piece, PieceBuffers& b) {
+    edge_vectors(x[static_cast<std::size_t>(piece.a)].data(), x[static_cast<std::size_t>(piece.b)].data(),
+                 piece.length, b.sx, b.sy, b.sz);
+    const Type& type = types_[static_cast<std::size_t>(piece.kind)];
+    spring_couplings(static_cast<float>(into.scale() * type.stiffness), static_cast<float>(type.rest),
+                     weights_of(*this, piece), piece.length, b.sx, b.sy, b.sz, b.t);
+    couplings.store(piece, b.sx, b.sy, b.sz, b.t);
   });
 }
 
@@ -180,6 +315,19 @@ class Dashpots : public Potential {
     add_blocks(springs_->slabs(), blocks, [&](const SpringPiece& piece, int i) -> Mat3 {
       const Vec3 n = direction(piece, i);
       return (coefficient(piece, i) * n) * n.transpose();
+    });
+  }
+  /// The springs' couplings grow along their own direction. It differs from that of the prediction by as
+  /// much as they turn within the step; Newton's method and iterative refinement make up for it.
+  void linearize(ConstVectors, Linearization& into, std::size_t first) const override {
+    Couplings& couplings = into.couplings(springs_->pattern(), first);
+    for_each_piece(*springs_->pattern(), [&](const CouplingPiece& piece, PieceBuffers& b) {
+      edge_vectors(predicted_[static_cast<std::size_t>(piece.a)].data(),
+                   predicted_[static_cast<std::size_t>(piece.b)].data(), piece.length, b.zx, b.zy, b.zz);
+      couplings.load(piece, b.sx, b.sy, b.sz, b.t);
+      add_dashpots(static_cast<float>(into.scale() * factor_ * springs_->stiffness_of_kind(piece.kind)),
+                   weights_of(*springs_, piece), piece.length, b.zx, b.zy, b.zz, b.sx, b.sy, b.sz);
+      couplings.store(piece, b.sx, b.sy, b.sz, b.t);
     });
   }
 

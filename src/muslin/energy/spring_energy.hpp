@@ -18,6 +18,7 @@
 
 #include "muslin/energy/spring_slabs.hpp"
 #include "muslin/lattice/springs.hpp"
+#include "muslin/potential/coupling_pattern.hpp"
 #include "muslin/potential/potential.hpp"
 
 namespace muslin {
@@ -34,6 +35,8 @@ class SpringEnergy : public Potential {
   void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override;
 
+  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override;
+
   /// Largest |z| / r over all springs, 1 if there are none.
   double max_stretch(ConstVectors x) const;
 
@@ -44,7 +47,16 @@ class SpringEnergy : public Potential {
     const double k = types_[static_cast<std::size_t>(direction)].stiffness;
     return weights_.empty() ? k : k * static_cast<double>(weights_[static_cast<std::size_t>(index)]);
   }
+  /// modulus × width, without weights [N/m].
+  double stiffness_of_kind(int direction) const {
+    return types_[static_cast<std::size_t>(direction)].stiffness;
+  }
   std::int64_t count() const { return count_; }
+
+  /// The springs as the inner solver walks them; kinds are directions.
+  const std::shared_ptr<const CouplingPattern>& pattern() const { return pattern_; }
+  /// Weights by slot of the pattern, 0 where a slot has no spring; empty if all are 1.
+  const std::vector<float>& slot_weights() const { return slot_weights_; }
 
  private:
   struct Type {
@@ -55,6 +67,8 @@ class SpringEnergy : public Potential {
   std::vector<float> weights_;
   SpringSlabs slabs_;
   std::int64_t count_ = 0;
+  std::shared_ptr<const CouplingPattern> pattern_;
+  std::vector<float> slot_weights_;
 };
 
 /// Axial dashpots beside the springs, c = β k: the force on b is −c n nᵀ(v_b − v_a). n is the spring's

@@ -33,6 +33,7 @@ class UniformField : public Potential {
   }
   void add_hessian_product(ConstVectors, ConstVectors, Vectors) const override {}
   void add_diagonal_blocks(ConstVectors, std::span<Mat3>) const override {}
+  void linearize(ConstVectors, Linearization&, std::size_t) const override {}
 
  private:
   std::shared_ptr<const std::vector<double>> masses_;

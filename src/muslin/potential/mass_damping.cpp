@@ -38,6 +38,9 @@ class Drag : public Potential {
       for (std::size_t v = begin; v < end; ++v) blocks[v].diagonal().array() += coefficient(v);
     });
   }
+  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
+    for (std::size_t v = 0; v < x.size(); ++v) into.add_identity(first + v, into.scale() * coefficient(v));
+  }
 
  private:
   double coefficient(std::size_t v) const { return factor_ * (*masses_)[v]; }

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "muslin/core/vectors.hpp"
+#include "muslin/potential/linearization.hpp"
 #include "muslin/potential/state.hpp"
 
 namespace muslin {
@@ -32,6 +33,12 @@ class Potential {
   /// blocks[v] += the diagonal 3×3 block of a positive semidefinite approximation of the Hessian: what the
   /// preconditioner is built from, N/m.
   virtual void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const = 0;
+
+  /// Adds the Hessian at x to `into`, W being a potential of its vertices first, first + 1, …. x stays valid
+  /// for as long as `into` is used. A potential that does not say otherwise is added by its product.
+  virtual void linearize(ConstVectors x, Linearization& into, std::size_t first) const {
+    into.add_general(*this, first, x);
+  }
 
   /// The largest t such that moving from x by t·d stays where W is finite and safe (1 means: all the way
   /// and beyond is safe too).

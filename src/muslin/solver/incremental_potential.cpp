@@ -69,6 +69,12 @@ void IncrementalPotential::diagonal_blocks(ConstVectors x, std::span<Mat3> block
   });
 }
 
+void IncrementalPotential::linearize(ConstVectors x, Linearization& into) const {
+  into.reset(problem_.masses, problem_.fixed, dt_ * dt_);
+  for (const Potential* potential : problem_.potentials) potential->linearize(x, into, 0);
+  into.finish();
+}
+
 double IncrementalPotential::max_step(ConstVectors x, ConstVectors d) const {
   double t = std::numeric_limits<double>::infinity();
   for (const Potential* potential : problem_.potentials) t = std::min(t, potential->max_step(x, d));
@@ -87,16 +93,12 @@ IncrementalPotential::Imbalance IncrementalPotential::imbalance(ConstVectors g) 
   return worst;
 }
 
-double IncrementalPotential::rounding_floor(ConstVectors x, std::span<const Mat3> blocks) const {
+double IncrementalPotential::rounding_floor(ConstVectors x, double stiffest) const {
   constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
-  double stiffest = 0;  // largest ‖block‖ / (m dt²) [1/s²]
   double farthest = 0;  // largest coordinate [m]
-  for (std::size_t v = 0; v < size(); ++v) {
-    farthest = std::max(farthest, x[v].lpNorm<Eigen::Infinity>());
-    if (!held(v)) stiffest = std::max(stiffest, blocks[v].norm() / (problem_.masses[v] * dt_ * dt_));
-  }
+  for (const Vec3& p : x) farthest = std::max(farthest, p.lpNorm<Eigen::Infinity>());
   // Neighbours' couplings add up to no more than the diagonal block again.
-  return 2 * stiffest * farthest * half_ulp;
+  return 2 * stiffest / (dt_ * dt_) * farthest * half_ulp;
 }
 
 }  // namespace muslin

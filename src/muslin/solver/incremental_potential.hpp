@@ -7,6 +7,7 @@
 
 #include <span>
 
+#include "muslin/potential/linearization.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
@@ -28,6 +29,8 @@ class IncrementalPotential {
   void hessian_product(ConstVectors x, ConstVectors p, Vectors y) const;
   /// Positive definite diagonal blocks of (an approximation of) the Hessian; mass alone on held vertices.
   void diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const;
+  /// The Hessian at x, for the inner solver. x is kept by reference.
+  void linearize(ConstVectors x, Linearization& into) const;
   /// The largest safe t along d over all potentials.
   double max_step(ConstVectors x, ConstVectors d) const;
 
@@ -37,8 +40,9 @@ class IncrementalPotential {
   };
   Imbalance imbalance(ConstVectors g) const;
   /// What of the imbalance rounding can cause: half a unit in the last place of every coordinate, carried
-  /// through the Hessian that `blocks` are the diagonal of [m/s²]. Nothing below it can be asked for.
-  double rounding_floor(ConstVectors x, std::span<const Mat3> blocks) const;
+  /// through the Hessian [m/s²]. Nothing below it can be asked for. `stiffest` is the largest ‖diagonal
+  /// block‖ / mass.
+  double rounding_floor(ConstVectors x, double stiffest) const;
 
   std::span<const double> masses() const { return problem_.masses; }
   bool held(std::size_t v) const { return problem_.fixed[v] != 0; }

@@ -19,10 +19,7 @@ constexpr double rounding = 1e-12;   // values closer than this (relative) canno
 constexpr double smallest_step = 1e-10;
 constexpr double loosest_forcing = 0.1;
 
-struct Point {
-  std::vector<Vec3> x, g;
-  IncrementalPotential::Value value;
-};
+using Point = NewtonWorkspace::Point;
 
 /// Moves `point` along s, downhill with slope gᵀs < 0; false if no step helps.
 bool line_search(const IncrementalPotential& function, ConstVectors s, double slope, Point& point,
@@ -48,14 +45,34 @@ bool line_search(const IncrementalPotential& function, ConstVectors s, double sl
   return false;
 }
 
+/// Solves H s = b at the x that `inner` was linearised at; in double where float cannot.
+LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
+                          const LinearSettings& settings, InnerSolver& inner, Vectors s) {
+  if (inner.stiffest() <= InnerSolver::float_limit) {
+    double norm;
+    return inner.solve(b, settings, s, norm);
+  }
+  std::vector<Mat3> blocks(b.size());
+  std::vector<Vec3> residual(b.size());
+  function.diagonal_blocks(x, blocks);
+  return conjugate_gradient(function, x, BlockJacobi(function, blocks), b, settings, s, residual);
+}
+
 }  // namespace
 
-StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings, Vectors x) {
+std::size_t NewtonWorkspace::bytes() const {
+  const std::size_t vectors = point.x.capacity() + point.g.capacity() + trial.x.capacity() +
+                              trial.g.capacity() + s.capacity() + minus_g.capacity();
+  return vectors * sizeof(Vec3) + inner.bytes();
+}
+
+StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings, Vectors x,
+                    NewtonWorkspace& workspace) {
   const std::size_t count = function.size();
-  Point point{std::vector<Vec3>(x.begin(), x.end()), std::vector<Vec3>(count), function.value(x)};
-  Point trial = point;
-  std::vector<Vec3> minus_g(count), s(count), residual(count);
-  std::vector<Mat3> blocks(count);
+  auto& [point, trial, s, minus_g, inner] = workspace;
+  point.x.assign(x.begin(), x.end());
+  for (auto* vectors : {&point.g, &trial.x, &trial.g, &s, &minus_g}) vectors->resize(count);
+  point.value = function.value(point.x);
   function.gradient(point.x, point.g);
 
   StepReport report;
@@ -66,8 +83,8 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
     report.worst_vertex = imbalance.vertex;
     report.converged = imbalance.largest <= settings.tolerance;
     if (report.converged) break;
-    function.diagonal_blocks(point.x, blocks);
-    if (imbalance.largest <= function.rounding_floor(point.x, blocks)) {
+    inner.linearize(function, point.x);
+    if (imbalance.largest <= function.rounding_floor(point.x, inner.stiffest())) {
       report.converged = true;
       break;
     }
@@ -77,14 +94,12 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
       break;
     }
 
-    const BlockJacobi preconditioner(function, blocks);
     for (std::size_t v = 0; v < count; ++v) minus_g[v] = -point.g[v];
     const double g_norm = std::sqrt(dot(point.g, point.g));
     LinearSettings linear;
     linear.tolerance = std::max(forcing, 0.3 * settings.tolerance / imbalance.largest);
     linear.tolerance = std::min(linear.tolerance, loosest_forcing);
-    const LinearReport solved =
-        conjugate_gradient(function, point.x, preconditioner, minus_g, linear, s, residual);
+    const LinearReport solved = solve_linear(function, point.x, minus_g, linear, inner, s);
     ++report.newton_iterations;
     report.linear_iterations += solved.iterations;
 

@@ -1,10 +1,26 @@
 // Truncated Newton with line search: the minimiser behind implicit Euler and BDF2.
 #pragma once
 
+#include <vector>
+
 #include "muslin/solver/incremental_potential.hpp"
+#include "muslin/solver/inner_solver.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
+
+/// Vectors kept from step to step.
+struct NewtonWorkspace {
+  struct Point {
+    std::vector<Vec3> x, g;
+    IncrementalPotential::Value value;
+  };
+  Point point, trial;
+  std::vector<Vec3> s, minus_g;
+  InnerSolver inner;
+
+  std::size_t bytes() const;
+};
 
 /// Minimises `function` from x, in place; held vertices of x stay. x must be finite in value. The report's
 /// residual is the imbalance at the returned x. Converged: imbalance ≤ settings.tolerance, or at the level
@@ -14,6 +30,7 @@ namespace muslin {
 /// and Walker 1996) and up to the first negative curvature, then backtracks along s until the value has
 /// fallen enough (Armijo). Where values differ by less than their rounding, the slope decides instead
 /// (the approximate Wolfe condition of Hager and Zhang 2005).
-StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings, Vectors x);
+StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings, Vectors x,
+                    NewtonWorkspace& workspace);
 
 }  // namespace muslin

@@ -7,6 +7,7 @@
 
 #include "muslin/solver/conjugate_gradient.hpp"
 #include "muslin/solver/incremental_potential.hpp"
+#include "muslin/solver/inner_solver.hpp"
 #include "muslin/solver/newton.hpp"
 #include "muslin/solver/preconditioner.hpp"
 #include "muslin/solver/symplectic_euler.hpp"
@@ -62,17 +63,62 @@ std::vector<Vec3> warm_start(const IncrementalPotential& function, const StepPro
 }
 
 StepReport solve_implicit(const SolverSettings& settings, const StepContext& context,
-                          const StepProblem& problem, const State& state, std::vector<Vec3>& x) {
+                          const StepProblem& problem, const State& state, NewtonWorkspace& workspace,
+                          std::vector<Vec3>& x) {
   const IncrementalPotential function(problem, context.inertial_prediction, context.dt);
   x = warm_start(function, problem, state, context.length);
   if (x.empty()) return failed("the held vertices cannot reach their targets within this step");
-  return minimize(function, settings, x);
+  return minimize(function, settings, x, workspace);
+}
+
+/// Solves H s = b to a relative residual of `tolerance` in the norm of the preconditioner, whatever the
+/// definiteness of H: in float, refined with products in double (iterative refinement; Higham, Accuracy and
+/// Stability of Numerical Algorithms, ch. 12), and all in double where that does not converge.
+LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
+                           double tolerance, InnerSolver& inner, Vectors s, Vectors residual) {
+  constexpr double inner_tolerance = 1e-3;
+  constexpr double slowest = 0.3;  // residual after a refinement over that before
+  const std::size_t count = b.size();
+  LinearSettings linear;
+  linear.negative_curvature = NegativeCurvature::pass;
+  inner.linearize(function, x);
+  LinearReport report;
+  if (inner.stiffest() <= InnerSolver::float_limit) {
+    std::vector<Vec3> correction(count), product(count);
+    std::fill(s.begin(), s.end(), Vec3::Zero());
+    std::copy(b.begin(), b.end(), residual.begin());
+    double first = 0;
+    for (double before = INFINITY;;) {
+      const double need = first > 0 ? tolerance * first / before : tolerance;
+      linear.tolerance = std::max(0.5 * need, inner_tolerance);
+      double norm;
+      const LinearReport solved = inner.solve(residual, linear, correction, norm);
+      if (first == 0) first = norm;
+      report.relative_residual = first > 0 ? norm / first : 0;
+      report.converged = norm <= tolerance * first;
+      if (report.converged || !(norm <= slowest * before)) break;
+      report.iterations += solved.iterations;
+      before = norm;
+      add(1, correction, s);
+      function.hessian_product(x, s, product);
+      for (std::size_t v = 0; v < count; ++v) residual[v] = b[v] - product[v];
+    }
+    if (report.converged) return report;
+  }
+  linear.tolerance = tolerance;
+  std::vector<Mat3> blocks(count);
+  function.diagonal_blocks(x, blocks);
+  const int wasted = report.iterations;
+  report = conjugate_gradient(function, x, BlockJacobi(function, blocks), b, linear, s, residual);
+  report.iterations += wasted;
+  return report;
 }
 
 /// One Newton step from x_n on the exact tangent: with x_{n+1} = x_n + dt v_{n+1} it is
 /// (M + dt² K) Δv = dt (f − dt K v_n), and held vertices have a known Δv (Baraff and Witkin 1998).
 StepReport solve_linearly_implicit(const SolverSettings& settings, const StepContext& context,
-                                   const StepProblem& problem, const State& state, std::vector<Vec3>& x) {
+                                   const StepProblem& problem, const State& state, NewtonWorkspace& workspace,
+                                   std::vector<Vec3>& x) {
   const std::size_t count = state.positions.size();
   const double dt = context.dt;
   const IncrementalPotential function(problem, context.inertial_prediction, dt);
@@ -84,13 +130,8 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
   function.gradient(state.positions, g);
   function.hessian_product(state.positions, coast, rhs);
   for (std::size_t v = 0; v < count; ++v) rhs[v] = -g[v] - rhs[v];
-  std::vector<Mat3> blocks(count);
-  function.diagonal_blocks(state.positions, blocks);
-  LinearSettings linear;
-  linear.tolerance = settings.linear_tolerance;
-  linear.negative_curvature = NegativeCurvature::pass;
   const LinearReport solved =
-      conjugate_gradient(function, state.positions, BlockJacobi(function, blocks), rhs, linear, s, residual);
+      solve_exactly(function, state.positions, rhs, settings.linear_tolerance, workspace.inner, s, residual);
   x = state.positions;
   add(1, coast, x);
   add(1, s, x);
@@ -113,8 +154,22 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
 
 }  // namespace
 
+struct Stepper::Workspace {
+  NewtonWorkspace newton;
+};
+Stepper::Stepper() : workspace_(std::make_unique<Workspace>()) {}
+Stepper::~Stepper() = default;
+Stepper::Stepper(Stepper&&) noexcept = default;
+Stepper& Stepper::operator=(Stepper&&) noexcept = default;
+std::size_t Stepper::bytes() const { return workspace_->newton.bytes(); }
+
 StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                       State& state) {
+  return Stepper().step(settings, context, problem, state);
+}
+
+StepReport Stepper::step(const SolverSettings& settings, const StepContext& context,
+                         const StepProblem& problem, State& state) {
   assert(problem.masses.size() == state.positions.size());
   assert(problem.fixed.size() == state.positions.size());
   assert(state.velocities.size() == state.positions.size());
@@ -123,10 +178,10 @@ StepReport solve_step(const SolverSettings& settings, const StepContext& context
   switch (settings.integrator) {
     case Integrator::implicit_euler:
     case Integrator::bdf2:
-      report = solve_implicit(settings, context, problem, state, x);
+      report = solve_implicit(settings, context, problem, state, workspace_->newton, x);
       break;
     case Integrator::linearly_implicit_euler:
-      report = solve_linearly_implicit(settings, context, problem, state, x);
+      report = solve_linearly_implicit(settings, context, problem, state, workspace_->newton, x);
       break;
     case Integrator::symplectic_euler:
       report = solve_symplectic(context, problem, state, x);

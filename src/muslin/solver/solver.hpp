@@ -1,7 +1,9 @@
 // Time stepping: one step of an integrator over masses, potentials and held vertices.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,7 +50,27 @@ struct StepReport {
 /// What loads must know before the step of length dt from `state`.
 StepContext step_context(Integrator integrator, const State& state, double dt);
 
-/// Advances `state` by one step. If the report says not converged, `state` is unchanged; it never holds NaN.
+/// Advances states step by step. Keeps its vectors between steps, so that steps of one size allocate little.
+class Stepper {
+ public:
+  Stepper();
+  ~Stepper();
+  Stepper(Stepper&&) noexcept;
+  Stepper& operator=(Stepper&&) noexcept;
+
+  /// Advances `state` by one step. If the report says not converged, `state` is unchanged; it never holds
+  /// NaN.
+  StepReport step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
+                  State& state);
+  /// Memory held between steps.
+  std::size_t bytes() const;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+/// One step by a Stepper of its own. If the report says not converged, `state` is unchanged; it never holds NaN.
 StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                       State& state);
 

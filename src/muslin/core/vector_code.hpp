@@ -1,0 +1,12 @@
+// Vector code: plain loops compiled once for each instruction set, the best chosen at run time.
+#pragma once
+
+/// Before a function: clones of it for AVX-512, AVX2 and any other processor. They give the same bits, since
+/// no clone contracts or reorders floating-point operations. Functions called inside must be forced inline.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define MUSLIN_VECTOR_CODE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define MUSLIN_VECTOR_CODE
+#endif
+#define MUSLIN_INLINE [[gnu::always_inline]] inline
