@@ -15,6 +15,7 @@ void add_field(CLI::App& program);
 void add_render(CLI::App& program);
 void add_export(CLI::App& program);
 void add_materials(CLI::App& program);
+void add_verify(CLI::App& program);
 
 /// True once the user pressed Ctrl-C (or the process was asked to end).
 bool interrupted();

@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   add_render(program);
   add_export(program);
   add_materials(program);
+  add_verify(program);
 
   try {
     program.parse(argc, argv);

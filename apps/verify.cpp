@@ -1,0 +1,81 @@
+// muslin verify [TEST]
+#include <chrono>
+#include <memory>
+
+#include "command.hpp"
+#include "verify_case.hpp"
+#include <fmt/format.h>
+
+#include "muslin/core/error.hpp"
+#include "muslin/core/nearest_name.hpp"
+
+namespace muslin::app {
+namespace {
+
+std::string list() {
+  std::string text;
+  for (const VerifyCase& c : verify_cases())
+    text += fmt::format("{:<20} {}{}\n", c.name, c.claim, c.slow ? " (slow)" : "");
+  return text;
+}
+
+const VerifyCase& find_case(const std::string& name) {
+  std::vector<std::string> names;
+  for (const VerifyCase& c : verify_cases()) {
+    if (c.name == name) return c;
+    names.push_back(c.name);
+  }
+  throw Error(ErrorKind::usage, fmt::format("there is no test `{}`", name),
+              name_advice(name, names) + " (muslin verify --list)");
+}
+
+std::string row(const VerifyCase& c, const Comparison& number) {
+  const std::string unit = number.relative ? " %" : "";
+  const double scale = number.relative ? 100 : 1;
+  return fmt::format(
+      "{:<20} {:<44} {:>12.7g} {:>12.7g} {:>10} {:>10}  {}  {}\n", c.name, number.quantity, number.reference,
+      number.measured, fmt::format("{:.2g}{}", scale * number.deviation(), unit),
+      fmt::format("{:.2g}{}", scale * number.tolerance, unit), number.passed() ? "pass" : "FAIL", c.source);
+}
+
+/// The number of comparisons that failed.
+int verify(const std::vector<VerifyCase>& cases) {
+  print(fmt::format("{:<20} {:<44} {:>12} {:>12} {:>10} {:>10}  {}  {}\n", "test", "quantity", "reference",
+                    "measured", "deviation", "tolerance", "    ", "source"));
+  const auto begin = std::chrono::steady_clock::now();
+  int count = 0, failed = 0;
+  for (const VerifyCase& c : cases) {
+    if (interrupted()) throw Error(ErrorKind::interrupted, "stopped", "run it again");
+    for (const Comparison& number : c.run()) {
+      print(row(c, number));
+      ++count;
+      failed += number.passed() ? 0 : 1;
+    }
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  print(fmt::format("{} of {} pass ({:.0f} s)\n", count - failed, count, seconds));
+  return failed;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& program) {
+  struct Arguments {
+    std::string test;
+    bool list = false;
+  };
+  auto* command = program.add_subcommand("verify", "run physics against closed forms and published numbers");
+  auto a = std::make_shared<Arguments>();
+  command->add_option("TEST", a->test, "one test (default: all)");
+  command->add_flag("--list", a->list, "what there is");
+  command->callback([a] {
+    if (a->list) return print(list());
+    listen_for_interrupts();
+    const int failed = verify(a->test.empty() ? verify_cases() : std::vector{find_case(a->test)});
+    if (failed > 0)
+      throw Error(ErrorKind::solver, fmt::format("{} of the numbers are off", failed),
+                  "see the lines with FAIL");
+  });
+}
+
+}  // namespace muslin::app

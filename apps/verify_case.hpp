@@ -1,0 +1,40 @@
+// The cases of `muslin verify`: physics with a known answer, run through the library as a user would.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace muslin::app {
+
+/// One number against its reference.
+struct Comparison {
+  std::string quantity;
+  double reference = 0;
+  double measured = 0;
+  double tolerance = 0;
+  bool relative = true;  ///< deviation and tolerance are shares of |reference|, else in its unit
+
+  double deviation() const;
+  bool passed() const;  ///< false also for what is not a number
+};
+
+struct VerifyCase {
+  std::string name;
+  std::string claim;   ///< what it shows, one sentence
+  std::string source;  ///< of the reference values
+  bool slow = false;   ///< takes more than about a second
+  std::function<std::vector<Comparison>()> run;
+};
+
+/// All cases, in the order they are run. Names are unique.
+const std::vector<VerifyCase>& verify_cases();
+
+/// What the files of cases add to the list.
+std::vector<VerifyCase> stepping_cases();
+std::vector<VerifyCase> motion_cases();
+std::vector<VerifyCase> elasticity_cases();
+std::vector<VerifyCase> bending_cases();
+std::vector<VerifyCase> promise_cases();
+
+}  // namespace muslin::app

@@ -1,0 +1,25 @@
+#include <cmath>
+
+#include "verify_case.hpp"
+
+namespace muslin::app {
+
+double Comparison::deviation() const {
+  const double difference = std::abs(measured - reference);
+  return relative ? difference / std::abs(reference) : difference;
+}
+
+bool Comparison::passed() const { return deviation() <= tolerance; }
+
+const std::vector<VerifyCase>& verify_cases() {
+  static const std::vector<VerifyCase> all = [] {
+    std::vector<VerifyCase> cases;
+    for (const auto& part :
+         {stepping_cases(), motion_cases(), elasticity_cases(), bending_cases(), promise_cases()})
+      cases.insert(cases.end(), part.begin(), part.end());
+    return cases;
+  }();
+  return all;
+}
+
+}  // namespace muslin::app

@@ -1,0 +1,95 @@
+#include "verify_experiment.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace muslin::app {
+
+Experiment::Experiment() {
+  static std::atomic<int> count{0};
+  folder_ = std::filesystem::temp_directory_path() / fmt::format("muslin-verify-{}-{}", ::getpid(), count++);
+  std::filesystem::create_directories(folder_);
+}
+
+Experiment::~Experiment() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+void Experiment::write(const std::string& file, const std::string& content) const {
+  const std::filesystem::path path = folder_ / file;
+  std::ofstream out(path);
+  out << content;
+  out.close();
+  if (!out)
+    throw Error(ErrorKind::file, "cannot write " + path.string(), "set TMPDIR to a folder with space");
+}
+
+void Experiment::box(const std::string& file, const Vec3& size) const {
+  std::string obj;
+  for (int corner = 0; corner < 8; ++corner) {
+    obj += fmt::format("v {:.17g} {:.17g} {:.17g}\n", (corner & 1) * size.x(), (corner >> 1 & 1) * size.y(),
+                       (corner >> 2 & 1) * size.z());
+  }
+  write(file, obj + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+}
+
+void Experiment::level_sheet(const std::string& file, double x, double z, int cells) const {
+  std::string obj;
+  for (int b = 0; b <= cells; ++b) {
+    for (int a = 0; a <= cells; ++a)
+      obj += fmt::format("v {:.17g} 0 {:.17g}\n", x * a / cells, z * b / cells);
+  }
+  const int row = cells + 1;
+  for (int b = 0; b < cells; ++b) {
+    for (int a = 0; a < cells; ++a) {
+      const int v = 1 + b * row + a;
+      obj += fmt::format("f {} {} {} {}\n", v, v + row, v + row + 1, v + 1);
+    }
+  }
+  write(file, obj);
+}
+
+void Experiment::upright_sheet(const std::string& file, double x, double y) const {
+  write(file,
+        fmt::format("v 0 0 0\nv {0:.17g} 0 0\nv {0:.17g} {1:.17g} 0\nv 0 {1:.17g} 0\nf 1 2 3 4\n", x, y));
+}
+
+Simulation Experiment::start(const std::string& scene, const std::vector<std::string>& overrides) const {
+  return Simulation(
+      std::make_shared<const Model>(build_model(parse_scene(scene, folder_ / "scene.toml", overrides))));
+}
+
+void advance(Simulation& simulation, int frames) {
+  for (int frame = 0; frame < frames; ++frame) simulation.advance();
+}
+
+std::size_t vertex(const Simulation& simulation, int i, int j, int k) {
+  const int index = simulation.model().bodies.front().lattice.find_vertex({i, j, k});
+  if (index < 0)
+    throw Error(ErrorKind::usage, fmt::format("no vertex ({}, {}, {})", i, j, k), "mend the case");
+  return static_cast<std::size_t>(index);
+}
+
+Vec3 position(const Simulation& simulation, int i, int j, int k) {
+  return simulation.state().positions[vertex(simulation, i, j, k)];
+}
+
+double largest_distance(ConstVectors x, ConstVectors y) {
+  double largest = 0;
+  for (std::size_t v = 0; v < x.size(); ++v) largest = std::max(largest, (x[v] - y[v]).norm());
+  return largest;
+}
+
+std::string static_solve(double tolerance) {
+  return fmt::format(
+      "[time]\nframe_rate = 1e-4\nsteps_per_frame = 1\nduration = 1e6\n"
+      "[solver]\ntolerance = {:.17g}\nmax_iterations = 1000\n",
+      tolerance);
+}
+
+}  // namespace muslin::app

@@ -1,0 +1,51 @@
+// What the cases of `muslin verify` are made of: a temporary folder with meshes, scenes written as text, and
+// short ways to lattice vertices.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "muslin/muslin.hpp"
+
+namespace muslin::app {
+
+/// A temporary folder, removed with the object.
+class Experiment {
+ public:
+  Experiment();
+  ~Experiment();
+  Experiment(const Experiment&) = delete;
+  Experiment& operator=(const Experiment&) = delete;
+
+  /// Writes a closed box from the origin to `size` [m].
+  void box(const std::string& file, const Vec3& size) const;
+  /// Writes a flat sheet x by z in the plane y = 0, made of `cells` by `cells` squares [m].
+  void level_sheet(const std::string& file, double x, double z, int cells) const;
+  /// Writes an upright sheet x by y in the plane z = 0 [m].
+  void upright_sheet(const std::string& file, double x, double y) const;
+
+  /// A simulation of the scene given as text; meshes are found in the folder.
+  Simulation start(const std::string& scene, const std::vector<std::string>& overrides = {}) const;
+
+ private:
+  void write(const std::string& file, const std::string& content) const;
+  std::filesystem::path folder_;
+};
+
+void advance(Simulation& simulation, int frames);
+
+/// Index of vertex (i, j, k) of the only body's lattice.
+std::size_t vertex(const Simulation& simulation, int i, int j, int k);
+/// Where it is [m].
+Vec3 position(const Simulation& simulation, int i, int j, int k);
+
+/// Largest |x − y| over all vertices [m].
+double largest_distance(ConstVectors x, ConstVectors y);
+
+/// The part of a scene that finds its static equilibrium: steps so long that inertia does not matter.
+/// `tolerance` [m/s²].
+std::string static_solve(double tolerance);
+
+}  // namespace muslin::app
