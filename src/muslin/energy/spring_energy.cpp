@@ -78,7 +78,8 @@ Vec3 difference(ConstVectors x, const SpringPiece& piece, int i) {
 }
 
 /// Runs of one b − a that are less than this many vertices apart become one: springs that are not there cost
-/// as little as those that are, short loops cost more.
+/// as little as those that are, short loops cost more. Runs along x stay apart: they are the chains that the
+/// preconditioner solves side by side.
 constexpr int shortest_run = 64;
 constexpr int longest_gap = 8;
 
@@ -95,7 +96,7 @@ std::vector<CouplingRun> coupling_runs(const Springs& springs) {
       CouplingRun& last = runs.back();
       const int gap = a - last.a - last.length;
       if (last.kind == run.direction && last.b - last.a == b - a && gap >= 0 && gap <= longest_gap &&
-          run.length < shortest_run) {
+          run.length < shortest_run && axis != 0) {
         last.length += gap + run.length;
         continue;
       }

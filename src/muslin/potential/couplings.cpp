@@ -14,6 +14,7 @@ namespace {
 
 constexpr int block_size = CouplingPattern::block_size;
 constexpr float largest = 32767;
+constexpr std::size_t room = 64;  // vector code may read this far past the end
 
 MUSLIN_INLINE float upper_half(std::uint16_t bits) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(bits) << 16);
@@ -174,7 +175,7 @@ MUSLIN_VECTOR_CODE void store_piece(std::uint16_t* __restrict c, float per_unit,
 void Couplings::reset(std::shared_ptr<const CouplingPattern> pattern, std::size_t first) {
   pattern_ = std::move(pattern);
   first_ = first;
-  coefficients_.resize(4 * static_cast<std::size_t>(pattern_->slot_count()));
+  coefficients_.resize(4 * static_cast<std::size_t>(pattern_->slot_count()) + room);
   units_.resize(pattern_->pieces().size());
   std::memset(coefficients_.data(), 0, coefficients_.size() * sizeof(std::uint16_t));
   std::fill_n(units_.data(), units_.size(), 0.0F);

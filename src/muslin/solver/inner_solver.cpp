@@ -74,6 +74,11 @@ LinearReport InnerSolver::solve(ConstVectors b, const LinearSettings& settings, 
   const double first = rz;
   const double stop = settings.tolerance * settings.tolerance * rz;
   norm = scale * std::sqrt(rz);
+  if (norm <= settings.enough) {
+    std::fill(s.begin(), s.end(), Vec3::Zero());
+    report.converged = true;
+    return report;
+  }
   const auto step = [&](double alpha, double beta) {
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
       advance(begin, end, static_cast<float>(alpha), static_cast<float>(beta), x, z, p);

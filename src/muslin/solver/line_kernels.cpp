@@ -62,57 +62,81 @@ MUSLIN_INLINE Six block(float q, float sx, float sy, float sz, float t) {
   return {q * sx * sx + t, q * sx * sy, q * sx * sz, q * sy * sy + t, q * sy * sz, q * sz * sz + t};
 }
 
+/// Sixteen vertices at a time, computed apart from where they are stored: the last sixteen reach past the end
+/// of what is asked for (all arrays have room for that) and are stored in part.
+struct Out {
+  alignas(64) float x[lanes], y[lanes], z[lanes];
+};
+MUSLIN_INLINE void put(Out& out, int l, const Triple& value) {
+  out.x[l] = value.x, out.y[l] = value.y, out.z[l] = value.z;
+}
+template <class Body>
+MUSLIN_INLINE void for_each_sixteen(int n, Floats to, const Body& body) {
+  int i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    Out out;
+    body(i, out);
+    for (int l = 0; l < lanes; ++l) to.x[i + l] = out.x[l];
+    for (int l = 0; l < lanes; ++l) to.y[i + l] = out.y[l];
+    for (int l = 0; l < lanes; ++l) to.z[i + l] = out.z[l];
+  }
+  if (i == n) return;
+  Out out;
+  body(i, out);
+  for (int l = 0; l < n - i; ++l) to.x[i + l] = out.x[l], to.y[i + l] = out.y[l], to.z[i + l] = out.z[l];
+}
+MUSLIN_INLINE Six pivot(const PivotStretch& pivots, int i) {
+  return {pivots.unit[0] * pivots.m[0][i], pivots.unit[1] * pivots.m[1][i], pivots.unit[2] * pivots.m[2][i],
+          pivots.unit[3] * pivots.m[3][i], pivots.unit[4] * pivots.m[4][i], pivots.unit[5] * pivots.m[5][i]};
+}
+MUSLIN_INLINE Triple force(const CouplingStretch& b, int i, Floats neighbour) {
+  return couple(b.q, whole(b.sx[i]), whole(b.sy[i]), whole(b.sz[i]), std::max(0.0F, upper_half(b.t[i])),
+                {neighbour.x[i], neighbour.y[i], neighbour.z[i]});
+}
+
 }  // namespace
 
 MUSLIN_VECTOR_CODE void forward(int n, PivotStretch pivots, Floats r, Floats w) {
-  const std::array<float, 6> u = {pivots.unit[0], pivots.unit[1], pivots.unit[2],
-                                  pivots.unit[3], pivots.unit[4], pivots.unit[5]};
-#pragma GCC ivdep
-  for (int i = 0; i < n; ++i) {
-    const Six m = {u[0] * pivots.m[0][i], u[1] * pivots.m[1][i], u[2] * pivots.m[2][i],
-                   u[3] * pivots.m[3][i], u[4] * pivots.m[4][i], u[5] * pivots.m[5][i]};
-    const Triple out = solve(m, {r.x[i], r.y[i], r.z[i]});
-    w.x[i] = out.x, w.y[i] = out.y, w.z[i] = out.z;
-  }
+  for_each_sixteen(
+      n, w, [&](int i, Out& out) __attribute__((always_inline)) {
+        for (int l = 0; l < lanes; ++l)
+          put(out, l, solve(pivot(pivots, i + l), {r.x[i + l], r.y[i + l], r.z[i + l]}));
+      });
 }
 
 MUSLIN_VECTOR_CODE void forward(int n, PivotStretch pivots, Floats r, CouplingStretch b, Floats neighbour,
                                 Floats w) {
-  const std::array<float, 6> u = {pivots.unit[0], pivots.unit[1], pivots.unit[2],
-                                  pivots.unit[3], pivots.unit[4], pivots.unit[5]};
-#pragma GCC ivdep
-  for (int i = 0; i < n; ++i) {
-    const Six m = {u[0] * pivots.m[0][i], u[1] * pivots.m[1][i], u[2] * pivots.m[2][i],
-                   u[3] * pivots.m[3][i], u[4] * pivots.m[4][i], u[5] * pivots.m[5][i]};
-    const Triple f =
-        couple(b.q, whole(b.sx[i]), whole(b.sy[i]), whole(b.sz[i]), std::max(0.0F, upper_half(b.t[i])),
-               {neighbour.x[i], neighbour.y[i], neighbour.z[i]});
-    const Triple out = solve(m, {r.x[i] + f.x, r.y[i] + f.y, r.z[i] + f.z});
-    w.x[i] = out.x, w.y[i] = out.y, w.z[i] = out.z;
-  }
+  for_each_sixteen(
+      n, w, [&](int i, Out& out) __attribute__((always_inline)) {
+        for (int l = 0; l < lanes; ++l) {
+          const Triple f = force(b, i + l, neighbour);
+          put(out, l, solve(pivot(pivots, i + l), {r.x[i + l] + f.x, r.y[i + l] + f.y, r.z[i + l] + f.z}));
+        }
+      });
 }
 
 MUSLIN_VECTOR_CODE void backward(int n, Floats w, Floats z) {
-#pragma GCC ivdep
-  for (int i = 0; i < n; ++i) z.x[i] += w.x[i], z.y[i] += w.y[i], z.z[i] += w.z[i];
+  for_each_sixteen(
+      n, z, [&](int i, Out& out) __attribute__((always_inline)) {
+        for (int l = 0; l < lanes; ++l)
+          put(out, l, {z.x[i + l] + w.x[i + l], z.y[i + l] + w.y[i + l], z.z[i + l] + w.z[i + l]});
+      });
 }
 
 MUSLIN_VECTOR_CODE void backward(int n, PivotStretch pivots, CouplingStretch b, Floats neighbour, Floats w,
                                  Floats z) {
-  const std::array<float, 6> u = {pivots.unit[0], pivots.unit[1], pivots.unit[2],
-                                  pivots.unit[3], pivots.unit[4], pivots.unit[5]};
-#pragma GCC ivdep
-  for (int i = 0; i < n; ++i) {
-    const Six m = {u[0] * pivots.m[0][i], u[1] * pivots.m[1][i], u[2] * pivots.m[2][i],
-                   u[3] * pivots.m[3][i], u[4] * pivots.m[4][i], u[5] * pivots.m[5][i]};
-    const Triple f =
-        couple(b.q, whole(b.sx[i]), whole(b.sy[i]), whole(b.sz[i]), std::max(0.0F, upper_half(b.t[i])),
-               {neighbour.x[i], neighbour.y[i], neighbour.z[i]});
-    const Triple out = solve(m, f);
-    const float wx = w.x[i] + out.x, wy = w.y[i] + out.y, wz = w.z[i] + out.z;
-    w.x[i] = wx, w.y[i] = wy, w.z[i] = wz;
-    z.x[i] += wx, z.y[i] += wy, z.z[i] += wz;
-  }
+  for_each_sixteen(
+      n, w, [&](int i, Out& out) __attribute__((always_inline)) {
+        for (int l = 0; l < lanes; ++l) {
+          const Triple s = solve(pivot(pivots, i + l), force(b, i + l, neighbour));
+          put(out, l, {w.x[i + l] + s.x, w.y[i + l] + s.y, w.z[i + l] + s.z});
+        }
+      });
+  for_each_sixteen(
+      n, z, [&](int i, Out& out) __attribute__((always_inline)) {
+        for (int l = 0; l < lanes; ++l)
+          put(out, l, {z.x[i + l] + w.x[i + l], z.y[i + l] + w.y[i + l], z.z[i + l] + w.z[i + l]});
+      });
 }
 
 MUSLIN_VECTOR_CODE double dot(int n, Floats r, Floats z) {

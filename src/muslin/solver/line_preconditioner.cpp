@@ -142,7 +142,7 @@ void LinePreconditioner::factor_lines(const Linearization& h, Body& body, int ax
   const std::size_t count = at(pattern.vertex_count());
   Buffer<std::int16_t>& pivots = body.pivots[axis - 1];
   auto& units = body.units[axis - 1];
-  pivots.resize(6 * count);
+  pivots.resize(6 * count + lanes);
   units.resize(lines.groups.size());
   const auto first = static_cast<std::ptrdiff_t>(body.couplings->first());
   const Floats au = h.upper().data() + first, al = h.lower().data() + first;

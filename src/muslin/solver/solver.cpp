@@ -91,6 +91,7 @@ LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x,
     for (double before = INFINITY;;) {
       const double need = first > 0 ? tolerance * first / before : tolerance;
       linear.tolerance = std::max(0.5 * need, inner_tolerance);
+      linear.enough = tolerance * first;
       double norm;
       const LinearReport solved = inner.solve(residual, linear, correction, norm);
       if (first == 0) first = norm;
