@@ -23,10 +23,10 @@ namespace {
 constexpr double gravity = 9.8;  // [m/s²]: tolerances are multiples of it
 
 const std::vector<ProblemSettings> cases = {
-    {"flag_10x6", {10, 6, 1}, 1, 1.0 / 240, false, 40},
-    {"flag_100x60", {100, 60, 1}, 0.1, 1.0 / 240, false, 40},
+    {"flag_10x6", {10, 6, 1}, 1, 1.0 / 240, false, 240},
+    {"flag_100x60", {100, 60, 1}, 0.1, 1.0 / 240, false, 200},
     {"crumpled_100x60", {100, 60, 1}, 0.1, 1.0 / 240, true, 2},
-    {"flag_400x240", {400, 240, 1}, 0.025, 1.0 / 240, false, 20},
+    {"flag_400x240", {400, 240, 1}, 0.025, 1.0 / 240, false, 60},
     {"flag_1000x600", {1000, 600, 1}, 0.01, 1.0 / 240, false, 6},
     {"cube_20", {20, 20, 20}, 0.2, 1.0 / 240, false, 20},
     {"cube_40", {40, 40, 40}, 0.1, 1.0 / 240, false, 10},
@@ -181,7 +181,7 @@ void add_cases() {
           ->Iterations(iterations)
           ->Unit(benchmark::kMillisecond);
     };
-    for (const double tolerance : {30.0, 1.0, 0.1, 1e-2, 3e-3, 1e-3, 1e-4}) {
+    for (const double tolerance : {30.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4}) {
       for (const int threads : {1, 2}) {
         add("muslin/threads:" + std::to_string(threads) + "/tolerance:" + std::to_string(tolerance), repeats,
             [=](benchmark::State& s) { muslin_step(s, settings, tolerance, threads); });

@@ -21,7 +21,7 @@ void crumple(const Lattice& lattice, std::vector<Vec3>& x) {
     const double length = uniform(6, 30) * lattice.width;
     const double angle = uniform(0, 2 * std::numbers::pi), phase = uniform(0, 2 * std::numbers::pi);
     const Vec3 k = 2 * std::numbers::pi / length * Vec3(std::cos(angle), std::sin(angle), 0);
-    const Vec3 amplitude = 0.004 * length * Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-4, 4));
+    const Vec3 amplitude = 0.006 * length * Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-4, 4));
     for (std::size_t v = 0; v < x.size(); ++v)
       x[v] += std::sin(k.dot(lattice.rest_position(v)) + phase) * amplitude;
   }

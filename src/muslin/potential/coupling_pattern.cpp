@@ -11,7 +11,7 @@ namespace {
 constexpr int largest_slab_count = 64;
 constexpr int smallest_slab = 2048;  // vertices
 constexpr int reaches_per_slab = 4;  // a coupling between slabs is computed twice: keep them few
-constexpr int lines_per_group = 64;  // the same vector lanes at every step along the lines
+constexpr int lines_per_group = 128;  // the same vector lanes at every step along the lines
 constexpr int vertices_per_task = 4096;
 
 }  // namespace

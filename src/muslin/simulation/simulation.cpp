@@ -85,6 +85,7 @@ double max_stretch(const Body& body, ConstVectors x) {
 struct Simulation::Parts {
   std::shared_ptr<const Model> model;
   State state;
+  Stepper stepper;
   Holds holds;
   Tally tally;
   int frame = 0;
@@ -171,7 +172,7 @@ void Simulation::Parts::advance_by(double length, int halvings) {
   for (const PotentialTerm& term : model->potentials) problem.potentials.push_back(term.potential.get());
   for (const auto& load : loads)
     if (load) problem.potentials.push_back(load.get());
-  const StepReport report = solve_step(settings, context, problem, state);
+  const StepReport report = stepper.step(settings, context, problem, state);
   tally.newton += report.newton_iterations;
   tally.linear += report.linear_iterations;
   if (!report.converged) {
