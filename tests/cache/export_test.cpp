@@ -69,27 +69,27 @@ TEST_F(Export, MddHoldsTheSamePointsBigEndian) {
   EXPECT_EQ(number_at<int>(bytes, 0), frames);
   EXPECT_EQ(number_at<int>(bytes, 4), 8);
   EXPECT_EQ(number_at<float>(bytes, 12), static_cast<float>(1 / 24.0));
-  EXPECT_EQ(number_at<float>(bytes, bytes.size() - 4), run->points(0, Surface::skin, frames - 1)[7].z());
+  EXPECT_EQ(number_at<float>(bytes, bytes.size() - 4), run->points(0, SurfaceKind::skin, frames - 1)[7].z());
 }
 
 TEST_F(Export, ObjSequenceKeepsPolygonsSeamsAndGroups) {
   export_run(*run, scratch / "a.obj");
   EXPECT_FALSE(fs::exists(scratch / "a.0004.obj"));
   const Mesh mesh = read_mesh(scratch / "a.0003.obj").mesh;
-  const Mesh& expected = run->mesh(0, Surface::skin);
+  const Mesh& expected = run->mesh(0, SurfaceKind::skin);
   EXPECT_EQ(mesh.face_vertices, expected.face_vertices);
   EXPECT_EQ(mesh.face_offsets, expected.face_offsets);
   ASSERT_EQ(mesh.corner_uvs.size(), 24u);
   EXPECT_EQ(mesh.uvs[static_cast<std::size_t>(mesh.corner_uvs[1])], Vec2(0.5, 0.25));
-  const auto points = run->points(0, Surface::skin, 3);
+  const auto points = run->points(0, SurfaceKind::skin, 3);
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(mesh.positions[i].cast<float>(), points[i]);
 }
 
 TEST_F(Export, PlySequenceOfTheContour) {
-  export_run(*run, scratch / "a.ply", {"flag", Surface::contour});
+  export_run(*run, scratch / "a.ply", {"flag", SurfaceKind::contour});
   const Mesh mesh = read_mesh(scratch / "a.0002.ply").mesh;
   EXPECT_EQ(mesh.face_count(), 12u);
-  EXPECT_LT((mesh.positions[0].cast<float>() - run->points(0, Surface::contour, 2)[0]).norm(), 1e-6);
+  EXPECT_LT((mesh.positions[0].cast<float>() - run->points(0, SurfaceKind::contour, 2)[0]).norm(), 1e-6);
 }
 
 void check_gltf(const tinygltf::Model& model, const RunReader& run) {
@@ -125,7 +125,7 @@ void check_gltf(const tinygltf::Model& model, const RunReader& run) {
   EXPECT_FALSE(
       model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))].minValues.empty());
   // The set of moved points is that of the run's last frame, to float's last bit.
-  const auto points = run.points(0, Surface::skin, frames - 1);
+  const auto points = run.points(0, SurfaceKind::skin, frames - 1);
   std::vector<bool> met(points.size(), false);
   for (std::size_t i = 0; i < base.size(); i += 3) {
     const Vec3f moved(base[i] + last[i], base[i + 1] + last[i + 1], base[i + 2] + last[i + 2]);
@@ -232,8 +232,8 @@ TEST_F(Export, UsdaHasTimeSamplesUvsAndUnits) {
   };
   const std::size_t points = text.find("points.timeSamples"),
                     velocities = text.find("velocities.timeSamples");
-  expect_floats(numbers_behind(text, " 2: ", points), flat_points(run->points(0, Surface::skin, 2)));
-  expect_floats(numbers_behind(text, " 2: ", velocities), flat_points(run->velocities(0, Surface::skin, 2)));
+  expect_floats(numbers_behind(text, " 2: ", points), flat_points(run->points(0, SurfaceKind::skin, 2)));
+  expect_floats(numbers_behind(text, " 2: ", velocities), flat_points(run->velocities(0, SurfaceKind::skin, 2)));
   EXPECT_EQ(numbers_behind(text, " 0: ", text.find("extent.timeSamples")),
             (std::vector<double>{0, 0, 0, 3, 2, 1}));
 }
@@ -276,7 +276,7 @@ TEST_F(Export, RefusesWhatItCannotWrite) {
   };
   EXPECT_EQ(kind_of(scratch / "a.abc", {}), ErrorKind::usage);
   EXPECT_EQ(kind_of(scratch / "a", {}), ErrorKind::usage);
-  EXPECT_EQ(kind_of(scratch / "a.pc2", {"sail", Surface::skin}), ErrorKind::usage);
+  EXPECT_EQ(kind_of(scratch / "a.pc2", {"sail", SurfaceKind::skin}), ErrorKind::usage);
   for (const char* suffix : {"pc2", "mdd", "obj", "ply", "usda", "glb", "gltf", "vtu"})
     EXPECT_EQ(kind_of(scratch / (std::string("no/such/place.") + suffix), {}), ErrorKind::file) << suffix;
 }

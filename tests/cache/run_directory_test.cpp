@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/run_reader.hpp"
 #include "muslin/cache/run_writer.hpp"
@@ -120,18 +120,18 @@ TEST(RunDirectory, IsReadBack) {
   ASSERT_EQ(run.frame_count(), 6);
   EXPECT_EQ(run.frame_rate(), 24);
   EXPECT_EQ(run.find_body(""), 0);
-  EXPECT_EQ(run.mesh(0, Surface::skin).face_vertices, model()->bodies[0].mesh.face_vertices);
+  EXPECT_EQ(run.mesh(0, SurfaceKind::skin).face_vertices, model()->bodies[0].mesh.face_vertices);
   EXPECT_EQ(run.lattice(0).voxels, model()->bodies[0].lattice.voxel_vertices);
   EXPECT_EQ(run.lattice(0).rest_positions, model()->rest_positions);
   Simulation simulation(model());
   for (int frame = 0; frame < 5; ++frame) simulation.advance();
   std::vector<Vec3> skin(8);
   model()->bodies[0].skin.apply(simulation.state().positions, skin);
-  const auto points = run.points(0, Surface::skin, 5);
+  const auto points = run.points(0, SurfaceKind::skin, 5);
   for (std::size_t i = 0; i < skin.size(); ++i) EXPECT_EQ(points[i], skin[i].cast<float>());
   EXPECT_EQ(run.diagnostics()[5].dissipated, simulation.diagnostics().dissipated);
-  const auto before = run.points(0, Surface::skin, 2), after = run.points(0, Surface::skin, 4);
-  EXPECT_LT((run.velocities(0, Surface::skin, 3)[1] - 12 * (after[1] - before[1])).norm(), 1e-5);
+  const auto before = run.points(0, SurfaceKind::skin, 2), after = run.points(0, SurfaceKind::skin, 4);
+  EXPECT_LT((run.velocities(0, SurfaceKind::skin, 3)[1] - 12 * (after[1] - before[1])).norm(), 1e-5);
   expect_error(ErrorKind::usage, "flag", [&] { run.find_body("sail"); });
   expect_error(ErrorKind::file, "no run here", [&] { RunReader(scratch.path()); });
 }
