@@ -1,4 +1,5 @@
 // The muslin program: maps the command line to the library and errors to exit codes.
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -8,6 +9,7 @@
 #include "command.hpp"
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/nearest_name.hpp"
 #include "muslin/version.hpp"
 
 namespace muslin::app {
@@ -18,6 +20,27 @@ volatile std::sig_atomic_t signalled = 0;
 void on_signal(int) {
   if (signalled) std::_Exit(static_cast<int>(ErrorKind::interrupted));  // asked twice: at once
   signalled = 1;
+}
+
+/// What to do about a command line that CLI11 cannot make sense of.
+std::string advice(const CLI::App& program, int argc, char** argv) {
+  const std::vector<CLI::App*> chosen = program.get_subcommands();
+  if (chosen.empty()) {
+    if (argc < 2 || argv[1][0] == '-') return "see muslin --help";
+    std::vector<std::string> names;
+    for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+    return name_advice(argv[1], names);
+  }
+  const CLI::App& command = *chosen.front();
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const std::string& word : command.remaining()) {
+    if (!word.starts_with("--")) continue;
+    const auto near = nearest_name(word.substr(0, word.find('=')), names);
+    if (near) return "did you mean `" + *near + "`?";
+  }
+  return "see muslin " + command.get_name() + " --help";
 }
 
 int fail(const std::string& message, int code) {
@@ -60,7 +83,11 @@ int run(int argc, char** argv) {
     program.exit(help);
     return 0;
   } catch (const CLI::ParseError& error) {
-    return fail(std::string(error.what()) + "; see muslin --help", static_cast<int>(ErrorKind::usage));
+    std::string problem = error.what();
+    if (argc > 1 && argv[1][0] != '-' && program.get_subcommands().empty())
+      problem = "there is no command `" + std::string(argv[1]) + "`";
+    std::replace(problem.begin(), problem.end(), '\n', ' ');
+    return fail(problem + "; " + advice(program, argc, argv), static_cast<int>(ErrorKind::usage));
   } catch (const Error& error) {
     return fail(error.what(), static_cast<int>(error.kind()));
   } catch (const std::bad_alloc&) {

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "command.hpp"
 
@@ -12,7 +13,7 @@ CLI::Validator number(bool integer, bool zero, const char* what) {
         char* end = nullptr;
         const double value = std::strtod(text.c_str(), &end);
         const bool good = end != text.c_str() && *end == 0 && std::isfinite(value) &&
-                          (zero ? value >= 0 : value > 0) && (!integer || value == std::floor(value));
+                          (zero ? value >= 0 : value > 0) && (!integer || (value == std::floor(value) && value <= std::numeric_limits<int>::max()));
         return good ? std::string() : "'" + text + "' is not " + what;
       },
       "");

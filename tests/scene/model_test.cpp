@@ -250,13 +250,14 @@ TEST_F(ModelTest, ThePivotOfAPinIsTheCentreOfItsVertices) {
 TEST_F(ModelTest, IsDescribedAsJsonAndText) {
   const Model model = build(body("box.obj", "[[pin]]\nname = 'p'\nwhere = { nearest = [0, 0, 0] }\n"));
   const auto json = nlohmann::json::parse(describe_json(model));
-  EXPECT_EQ(json["bodies"]["flag"]["vertices"], 154);
-  EXPECT_EQ(json["bodies"]["flag"]["voxels"], 60);
-  EXPECT_EQ(json["bodies"]["flag"]["tetrahedra"], 360);
-  EXPECT_EQ(json["bodies"]["flag"]["springs"]["edge"], 349);
-  EXPECT_EQ(json["bodies"]["flag"]["springs"]["face_diagonal"], 256);
-  EXPECT_EQ(json["bodies"]["flag"]["springs"]["body_diagonal"], 60);
-  EXPECT_NEAR(json["bodies"]["flag"]["mass"].get<double>(), 600, 1e-9);
+  EXPECT_EQ(json["bodies"][0]["name"], "flag");
+  EXPECT_EQ(json["bodies"][0]["vertices"], 154);
+  EXPECT_EQ(json["bodies"][0]["voxels"], 60);
+  EXPECT_EQ(json["bodies"][0]["tetrahedra"], 360);
+  EXPECT_EQ(json["bodies"][0]["springs"]["edge"], 349);
+  EXPECT_EQ(json["bodies"][0]["springs"]["face_diagonal"], 256);
+  EXPECT_EQ(json["bodies"][0]["springs"]["body_diagonal"], 60);
+  EXPECT_NEAR(json["bodies"][0]["mass"].get<double>(), 600, 1e-9);
   EXPECT_EQ(json["time"]["frames"], 48);
   EXPECT_EQ(json["time"]["steps"], 480);
   EXPECT_EQ(json["pins"][0]["vertices"], 1);

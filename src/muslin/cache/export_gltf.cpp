@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "muslin/cache/export_formats.hpp"
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/core/error.hpp"
 
 namespace muslin {

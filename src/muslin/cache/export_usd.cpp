@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "muslin/cache/export_formats.hpp"
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/output_file.hpp"
 
 namespace muslin {
 namespace {

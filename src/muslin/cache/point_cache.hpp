@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {

@@ -84,9 +84,10 @@ RunResult run_scene(const std::filesystem::path& file, const RunOptions& options
     }
     if (error.kind() == ErrorKind::file) {
       writer.abandon(error.what());
-    } else {
-      writer.finish(RunStatus::failed, error.what());
+      throw Error(ErrorKind::file, error.place(), error.problem(),
+                  error.remedy() + ", then continue with --resume");
     }
+    writer.finish(RunStatus::failed, error.what());
     throw;
   }
   result.last_frame = simulation.frame();

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/input_file.hpp"
 #include "muslin/core/error.hpp"
 
 namespace muslin {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/input_file.hpp"
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/tables.hpp"
 #include "muslin/cache/vtk_file.hpp"

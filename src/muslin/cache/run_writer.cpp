@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "muslin/cache/output_file.hpp"
+#include "muslin/cache/directory_lock.hpp"
+#include "muslin/core/input_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/cache/point_cache.hpp"
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/tables.hpp"
@@ -19,6 +21,7 @@
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/io/mesh_file.hpp"
+#include "muslin/scene/describe.hpp"
 #include "muslin/simulation/checkpoint.hpp"
 
 namespace muslin {
@@ -80,24 +83,6 @@ const char* name_of(RunStatus status) {
       return "failed";
   }
   return "";
-}
-
-std::string statistics_json(const Model& model) {
-  Json bodies = Json::array();
-  for (const Body& body : model.bodies) {
-    const BodyStatistics& s = body.statistics;
-    bodies.push_back(
-        {{"name", body.name},
-         {"vertices", s.vertices},
-         {"voxels", s.voxels},
-         {"tetrahedra", s.tetrahedra},
-         {"springs",
-          {{"edge", s.springs[0]}, {"face_diagonal", s.springs[1]}, {"body_diagonal", s.springs[2]}}},
-         {"mass", s.mass},
-         {"coverage", s.coverage},
-         {"contour_distance", s.contour_distance}});
-  }
-  return Json({{"bodies", bodies}}).dump(2) + "\n";
 }
 
 struct RunWriter::Parts {

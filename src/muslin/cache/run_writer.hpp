@@ -14,9 +14,6 @@ namespace muslin {
 enum class RunStatus { running, finished, interrupted, failed };
 const char* name_of(RunStatus status);
 
-/// The counts and masses of the bodies, as in stats.json and `muslin check --json`.
-std::string statistics_json(const Model& model);
-
 /// Writes a run. One process at a time; a lock in `checkpoint/` sees to it.
 ///
 /// A frame goes to the disk in this order: points, rows, checkpoint. Whatever moment the process is killed,

@@ -3,12 +3,12 @@
 #include <array>
 #include <limits>
 
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/cache/run_files.hpp"
-#include "muslin/cache/run_writer.hpp"
 #include "muslin/cache/vtk_file.hpp"
 #include "muslin/field/signed_distance.hpp"
 #include "muslin/io/mesh_file.hpp"
+#include "muslin/scene/describe.hpp"
 
 namespace muslin {
 namespace {

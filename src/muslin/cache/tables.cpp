@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/input_file.hpp"
 #include "muslin/core/error.hpp"
 
 namespace muslin {

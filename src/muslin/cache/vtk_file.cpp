@@ -7,7 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/input_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/core/error.hpp"
 
 namespace muslin {

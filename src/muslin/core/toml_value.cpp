@@ -1,11 +1,12 @@
 #include "muslin/core/toml_value.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 #include <tuple>
 
 #include <toml++/toml.h>
+
+#include "muslin/core/input_file.hpp"
 
 namespace muslin {
 namespace {
@@ -129,24 +130,6 @@ TomlValue parse_toml(std::string_view text, const std::string& file) {
   }
 }
 
-std::string read_text(const std::filesystem::path& file) {
-  std::error_code failure;
-  const auto refuse = [&](const std::string& problem, const std::string& remedy) -> Error {
-    return {ErrorKind::file, Place{file.string(), 0, 0}, problem, remedy};
-  };
-  const auto status = std::filesystem::status(file, failure);
-  if (!std::filesystem::exists(status)) throw refuse("no such file", "check the path");
-  if (std::filesystem::is_directory(status)) throw refuse("is a folder", "name a file in it");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw refuse("cannot be opened", "check its permissions");
-  std::string text;
-  char buffer[1 << 16];
-  while (in.read(buffer, sizeof buffer), in.gcount() > 0) {
-    text.append(buffer, static_cast<std::size_t>(in.gcount()));
-    if (text.size() > most_bytes) throw refuse("is larger than 64 MiB", "is it a text file?");
-  }
-  if (in.bad()) throw refuse("cannot be read to its end", "check the disk");
-  return text;
-}
+std::string read_text(const std::filesystem::path& file) { return read_file(file, most_bytes); }
 
 }  // namespace muslin

@@ -7,7 +7,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/io/binary_reader.hpp"
-#include "muslin/io/file_bytes.hpp"
+#include "muslin/core/input_file.hpp"
 #include "muslin/io/node_mesh.hpp"
 
 // Compiled here with hidden symbols, not linked: Debian's libdraco, which assimp brings along, exports
@@ -47,7 +47,7 @@ bool read_other_file(std::vector<unsigned char>* out, std::string* problem, cons
     return false;
   }
   try {
-    const std::string bytes = read_bytes(path);
+    const std::string bytes = read_file(path);
     out->assign(bytes.begin(), bytes.end());
     return true;
   } catch (const Error& error) {

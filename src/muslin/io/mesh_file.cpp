@@ -8,7 +8,8 @@
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/inspect.hpp"
 #include "muslin/io/assimp_reader.hpp"
-#include "muslin/io/file_bytes.hpp"
+#include "muslin/core/input_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/io/gltf_reader.hpp"
 #include "muslin/io/mesh_writers.hpp"
 #include "muslin/io/obj_reader.hpp"
@@ -89,7 +90,7 @@ MeshFile read_mesh_from(std::string_view bytes, const std::string& suffix, const
 }
 
 MeshFile read_mesh(const std::filesystem::path& path) {
-  const std::string bytes = read_bytes(path);
+  const std::string bytes = read_file(path);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   return read_mesh_from(bytes, path.extension().string(), path.string(), folder);
 }
@@ -106,9 +107,9 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh, ConstVector
                 "give one per vertex");
   const std::string suffix = lower(path.extension().string());
   if (suffix == ".obj")
-    write_bytes(path, to_obj(mesh, positions));
+    write_atomically(path, to_obj(mesh, positions));
   else if (suffix == ".ply")
-    write_bytes(path, to_ply(mesh, positions));
+    write_atomically(path, to_ply(mesh, positions));
   else
     throw Error(ErrorKind::file, Place{path.string()}, "meshes are not written as '" + suffix + "'",
                 "let the name end in .obj or .ply");

@@ -11,6 +11,7 @@
 #include <tbb/parallel_sort.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/memory.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/geometry/orientation.hpp"
 #include "muslin/lattice/connect.hpp"
@@ -22,6 +23,8 @@ namespace muslin {
 namespace {
 
 constexpr std::int64_t most_voxels = std::int64_t{1} << 30;
+/// Of a body of many voxels while it is built, 385 measured; a run takes more.
+constexpr double bytes_per_voxel = 385;
 constexpr double least_fill = 1e-3;
 constexpr std::size_t row_grain = 64;
 
@@ -77,6 +80,12 @@ VoxelKeys place_grid(const Box& bounds, const LatticeSettings& settings, const S
   // Both sides of a sheet may pass one voxel, so half the area is the least that can be needed.
   const double count = std::max(std::abs(size.volume) / (w * w * w), 0.5 * size.area / (w * w));
   if (count > static_cast<double>(most_voxels)) throw_too_fine(w, count, size);
+  if (count * bytes_per_voxel > static_cast<double>(available_memory())) {
+    throw Error(ErrorKind::input,
+                "a voxel width of " + number(w) + " m would need about " + number(count) + " voxels and " +
+                    number(count * bytes_per_voxel / 1e9) + " GB of memory, more than there is",
+                "use a larger voxel width");
+  }
   if (bits > 62) {
     throw Error(ErrorKind::input,
                 "a voxel width of " + number(w) + " m gives a grid of more than 2^62 places",

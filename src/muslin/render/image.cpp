@@ -1,13 +1,11 @@
 #include "muslin/render/image.hpp"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <string>
 
 #include <png.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/output_file.hpp"
 
 namespace muslin {
 
@@ -35,30 +33,7 @@ void write_png(const std::filesystem::path& path, const Image& image) {
     throw Error(ErrorKind::file, {path.string()}, "libpng cannot encode the picture: " + message,
                 "try a smaller picture");
   }
-  replace_file(path, {bytes.data(), size});
-}
-
-void replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-  const std::string part = path.string() + ".part";
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  if (!file)
-    throw Error(ErrorKind::file, {path.string()}, std::string("cannot write: ") + std::strerror(errno),
-                "choose a folder that exists and can be written");
-  bool good = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  int code = good ? 0 : errno;
-  if (std::fclose(file) != 0 && good) {
-    good = false;
-    code = errno;
-  }
-  if (good && std::rename(part.c_str(), path.c_str()) != 0) {
-    good = false;
-    code = errno;
-  }
-  if (!good) {
-    std::remove(part.c_str());
-    throw Error(ErrorKind::file, {path.string()}, std::string("cannot write: ") + std::strerror(code),
-                "free some space or choose another place");
-  }
+  write_atomically(path, {reinterpret_cast<const char*>(bytes.data()), size}, false);
 }
 
 }  // namespace muslin

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <vector>
 
 namespace muslin {
@@ -32,8 +31,5 @@ struct Image {
 /// Replaces `path` whole or not at all: written beside it under another name, then renamed.
 /// Throws Error(file) if the disk is full or the place cannot be written.
 void write_png(const std::filesystem::path& path, const Image& image);
-
-/// As write_png, with the bytes given.
-void replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 }  // namespace muslin

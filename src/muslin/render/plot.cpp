@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/render/figure.hpp"
 #include "muslin/render/stroke_font.hpp"
 #include "muslin/render/ticks.hpp"
@@ -228,7 +229,7 @@ void write_plot(const std::filesystem::path& path, const Plot& plot) {
     throw Error(ErrorKind::usage, {path.string()}, "a plot has the suffix .svg or .png",
                 "give a name with one of them");
   const std::string text = plot_svg(plot);
-  replace_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  write_atomically(path, text, false);
 }
 
 }  // namespace muslin

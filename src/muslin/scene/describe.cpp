@@ -32,6 +32,7 @@ double stable_step(const Model& model) {
 Json body_json(const Body& body, const BodySettings& settings) {
   const BodyStatistics& s = body.statistics;
   Json json;
+  json["name"] = body.name;
   json["mesh"] = settings.mesh;
   json["kind"] = body.sheet ? "sheet" : "solid";
   if (body.sheet) json["thickness"] = body.thickness;
@@ -49,6 +50,17 @@ Json body_json(const Body& body, const BodySettings& settings) {
   json["contour_distance"] = s.contour_distance;
   json["stable_step"] = finite(s.stable_step);
   return json;
+}
+
+Json bodies_json(const Model& model) {
+  Json bodies = Json::array();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    bodies.push_back(body_json(model.bodies[b], model.scene.bodies[b]));
+  return bodies;
+}
+
+std::string as_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string body_text(const Body& body, const BodySettings& settings) {
@@ -81,10 +93,7 @@ std::string describe_json(const Model& model) {
                   {"step", scene.time.step()},
                   {"stable_step", finite(stable_step(model))}};
   json["integrator"] = name_of(integrator_names(), scene.solver.integrator);
-  json["bodies"] = Json::object();
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    json["bodies"][model.bodies[b].name] = body_json(model.bodies[b], scene.bodies[b]);
-  }
+  json["bodies"] = bodies_json(model);
   json["pins"] = Json::array();
   for (const Pin& pin : model.pins) {
     json["pins"].push_back({{"name", pin.name}, {"vertices", pin.vertices.size()}});
@@ -96,8 +105,10 @@ std::string describe_json(const Model& model) {
   json["probes"] = Json::array();
   for (const Probe& probe : model.probes) json["probes"].push_back({{"name", probe.name}});
   json["warnings"] = model.warnings;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return as_text(json);
 }
+
+std::string statistics_json(const Model& model) { return as_text(Json({{"bodies", bodies_json(model)}})); }
 
 std::string describe_text(const Model& model) {
   const Scene& scene = model.scene;
@@ -136,7 +147,7 @@ std::string describe_json(const MeshReport& r, const std::string& file) {
   json["min"] = vector(r.bounds.min());
   json["max"] = vector(r.bounds.max());
   json["warnings"] = r.warnings;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return as_text(json);
 }
 
 std::string describe_text(const MeshReport& r, const std::string& file) {

@@ -8,10 +8,12 @@
 
 namespace muslin {
 
-/// JSON: `title`, `time`, `bodies` (an object by name, each with `vertices`, `voxels`, `tetrahedra`,
+/// JSON: `title`, `time`, `bodies` (a list, each with `name`, `vertices`, `voxels`, `tetrahedra`,
 /// `springs.edge`, `.face_diagonal`, `.body_diagonal`, `mass`, `coverage`, `contour_distance`, …), `pins`,
 /// `forces`, `probes`, `warnings`.
 std::string describe_json(const Model& model);
+/// Its `bodies` alone: stats.json.
+std::string statistics_json(const Model& model);
 /// The same to read.
 std::string describe_text(const Model& model);
 

@@ -41,7 +41,8 @@ class OutputFile {
   std::uint64_t size_ = 0;
 };
 
-/// A file that appears under its name only when it is complete. Errors: file.
+/// A file that appears under its name only when it is complete: it is written as NAME.part beside it and
+/// renamed. A link is followed; what is not a regular file is refused. Errors: file.
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path path);
@@ -63,24 +64,7 @@ class WholeFile {
 /// part. With `durable` the new content is on the disk before the old is gone.
 void write_atomically(const std::filesystem::path& path, std::string_view content, bool durable = true);
 
-/// The whole file. Errors: file.
-std::string read_file(const std::filesystem::path& path);
-
 /// Creates a directory and its parents. Errors: file.
 void make_directory(const std::filesystem::path& path);
-
-/// Holds a directory for one process until destroyed or the process ends, however it ends.
-class DirectoryLock {
- public:
-  DirectoryLock() = default;
-  /// Error(file) if another process holds it; `directory` must exist. The lock is the file `name` in it.
-  DirectoryLock(const std::filesystem::path& directory, std::string_view name);
-  ~DirectoryLock();
-  DirectoryLock(DirectoryLock&& other) noexcept;
-  DirectoryLock& operator=(DirectoryLock&& other) noexcept;
-
- private:
-  int descriptor_ = -1;
-};
 
 }  // namespace muslin

@@ -1,17 +1,14 @@
-#include "muslin/cache/output_file.hpp"
+#include "muslin/core/output_file.hpp"
 
 #include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
+#include <cstdio>
 #include <utility>
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "muslin/core/error.hpp"
+#include "muslin/core/system_error.hpp"
 
 namespace muslin {
 namespace {
@@ -19,16 +16,19 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& action, int code) {
-  const char* remedy = "check the path and the disk";
-  if (code == ENOSPC || code == EDQUOT || code == EFBIG)
-    remedy = "free some space and continue with --resume";
-  else if (code == EACCES || code == EPERM || code == EROFS)
-    remedy = "choose a place you may write to";
-  else if (code == ENOTDIR || code == EISDIR || code == EEXIST)
-    remedy = "choose another path";
-  else if (code == ENOENT)
-    remedy = "check the path";
-  throw Error(ErrorKind::file, {path.string()}, "cannot " + action + ": " + std::strerror(code), remedy);
+  throw system_error(path, action, code);
+}
+
+/// Where a file of this name lies, links followed.
+fs::path target_of(const fs::path& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (!fs::exists(status)) return path;
+  if (fs::is_directory(status)) fail(path, "write", EISDIR);
+  if (!fs::is_regular_file(status))
+    throw Error(ErrorKind::file, {path.string()}, "cannot write: not a regular file", "choose another name");
+  const fs::path target = fs::canonical(path, code);
+  return code ? path : target;
 }
 
 /// Renames are on the disk only once the directory is.
@@ -111,7 +111,7 @@ void OutputFile::close() {
   if (descriptor_ >= 0 && ::close(std::exchange(descriptor_, -1)) != 0) fail(path_, "close", errno);
 }
 
-WholeFile::WholeFile(fs::path path) : path_(std::move(path)) {
+WholeFile::WholeFile(fs::path path) : path_(target_of(path)) {
   fs::path temporary = path_;
   temporary += ".part";
   try {
@@ -141,45 +141,11 @@ void write_atomically(const fs::path& path, std::string_view content, bool durab
   if (durable) sync_directory(path.parent_path());
 }
 
-std::string read_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || fs::is_directory(path))
-    fail(path, "open", fs::is_directory(path) ? EISDIR : errno ? errno : ENOENT);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (in.bad()) fail(path, "read", EIO);
-  return std::move(content).str();
-}
-
 void make_directory(const fs::path& path) {
   std::error_code code;
   fs::create_directories(path, code);
   if (code) fail(path, "create the directory", code.value());
   if (!fs::is_directory(path)) fail(path, "create the directory", ENOTDIR);
-}
-
-DirectoryLock::DirectoryLock(const fs::path& directory, std::string_view name) {
-  const fs::path path = directory / name;
-  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail(path, "open", errno);
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
-  const int code = errno;
-  ::close(std::exchange(descriptor_, -1));
-  if (code != EWOULDBLOCK) fail(path, "lock", code);
-  throw Error(ErrorKind::file, {directory.string()}, "another process is writing this run",
-              "wait for it or choose another directory with -o");
-}
-
-DirectoryLock::~DirectoryLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-DirectoryLock::DirectoryLock(DirectoryLock&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-DirectoryLock& DirectoryLock::operator=(DirectoryLock&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
 }
 
 }  // namespace muslin

@@ -1,0 +1,16 @@
+// Reading whole files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+namespace muslin {
+
+/// All bytes of a regular file of at most `most_bytes`. Never waits for a pipe nor reads a device.
+/// Errors: file, with what the system says.
+std::string read_file(const std::filesystem::path& path,
+                      std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+
+}  // namespace muslin

@@ -1,0 +1,14 @@
+// What the operating system says of a file, as an Error.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+
+/// Error(file) "PATH: cannot ACTION: REASON; remedy" for an errno.
+Error system_error(const std::filesystem::path& path, const std::string& action, int code);
+
+}  // namespace muslin
