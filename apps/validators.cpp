@@ -12,8 +12,9 @@ CLI::Validator number(bool integer, bool zero, const char* what) {
       [=](const std::string& text) {
         char* end = nullptr;
         const double value = std::strtod(text.c_str(), &end);
-        const bool good = end != text.c_str() && *end == 0 && std::isfinite(value) &&
-                          (zero ? value >= 0 : value > 0) && (!integer || (value == std::floor(value) && value <= std::numeric_limits<int>::max()));
+        const bool good =
+            end != text.c_str() && *end == 0 && std::isfinite(value) && (zero ? value >= 0 : value > 0) &&
+            (!integer || (value == std::floor(value) && value <= std::numeric_limits<int>::max()));
         return good ? std::string() : "'" + text + "' is not " + what;
       },
       "");

@@ -1,6 +1,7 @@
 // A program of your own on top of muslin: runs a scene and prints where its first probe is, frame by frame.
 #include <cstdio>
 #include <memory>
+
 #include <muslin/muslin.hpp>
 
 int main(int argc, char** argv) {
@@ -17,8 +18,9 @@ int main(int argc, char** argv) {
       if (model->probes.empty()) continue;
       const muslin::Probe& probe = model->probes.front();
       muslin::Vec3 at;
-      probe.point.apply(model->of(model->bodies[static_cast<std::size_t>(probe.body)], simulation.state().positions),
-                        {&at, 1});
+      probe.point.apply(
+          model->of(model->bodies[static_cast<std::size_t>(probe.body)], simulation.state().positions),
+          {&at, 1});
       std::printf("%d %.6f %.6f %.6f\n", frame, at.x(), at.y(), at.z());
     }
   } catch (const muslin::Error& error) {

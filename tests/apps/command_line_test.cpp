@@ -1,10 +1,9 @@
 // Exit codes and messages: what a script or a person sees of every mistake.
 #include <regex>
 
+#include "apps/program.hpp"
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
-
-#include "apps/program.hpp"
 
 namespace muslin {
 namespace {
@@ -90,7 +89,8 @@ TEST(CommandLine, FileErrorsAreCode5) {
   std::filesystem::create_symlink("/dev/zero", scratch / "zero.toml");
   std::filesystem::create_symlink("/dev/zero", scratch / "zero.obj");
   std::filesystem::create_symlink("loop.toml", scratch / "loop.toml");
-  for (const char* name : {"none.toml", "none.obj", "pipe.toml", "folder.toml", "zero.toml", "zero.obj", "loop.toml"}) {
+  for (const char* name :
+       {"none.toml", "none.obj", "pipe.toml", "folder.toml", "zero.toml", "zero.obj", "loop.toml"}) {
     SCOPED_TRACE(name);
     expect_refusal(run(scratch, {"check", scratch / name}), 5, name);
   }
@@ -155,9 +155,10 @@ TEST(CommandLine, OverridesReachTheSceneAndFaultsInThemAreTold) {
   EXPECT_EQ(json["time"]["frames"], 24);
   EXPECT_EQ(json["bodies"][0]["voxels"], 20 * 12 * 2);
   for (const char* setting :
-       {"time.duration=nan", "time.duration=inf", "force.0.acceleration=[nan,0,0]", "body.flag.velocity=[0,1e999,0]",
-        "time.steps_per_frame=1000000000", "time.frame_rate=1e-9", "body.flag.scale=0", "nonsense.key=1",
-        "body.banner.voxel_width=1", "body.flag.material.density=0", "solver.tolerance=0"}) {
+       {"time.duration=nan", "time.duration=inf", "force.0.acceleration=[nan,0,0]",
+        "body.flag.velocity=[0,1e999,0]", "time.steps_per_frame=1000000000", "time.frame_rate=1e-9",
+        "body.flag.scale=0", "nonsense.key=1", "body.banner.voxel_width=1", "body.flag.material.density=0",
+        "solver.tolerance=0"}) {
     SCOPED_TRACE(setting);
     expect_refusal(run(scratch, {"check", two_corners, "--set", setting}), 3, "--set");
   }

@@ -9,12 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "cache/scratch.hpp"
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include "cache/scratch.hpp"
 
 namespace muslin::test {
 
@@ -23,7 +22,7 @@ inline const std::filesystem::path scenes = source / "scenes";
 inline const std::string two_corners = (scenes / "thesis" / "2_two_corners.toml").string();
 
 struct Outcome {
-  int code = -1;   ///< exit code, or 128 + the signal that ended it
+  int code = -1;  ///< exit code, or 128 + the signal that ended it
   std::string out, err;
 };
 
@@ -31,8 +30,8 @@ struct Outcome {
 class Process {
  public:
   struct Streams {
-    std::string out;                 ///< a path to write standard output to, instead of a file of its own
-    std::function<void()> before;    ///< called in the new process, before the program starts
+    std::string out;               ///< a path to write standard output to, instead of a file of its own
+    std::function<void()> before;  ///< called in the new process, before the program starts
   };
   Process(const Scratch& scratch, const std::vector<std::string>& arguments, const Streams& streams = {})
       : out_(streams.out.empty() ? (scratch / "stdout").string() : streams.out),
@@ -63,7 +62,8 @@ class Process {
   void send(int signal) const { ::kill(id_, signal); }
   bool running() const {
     siginfo_t info{};
-    return ::waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0;
+    return ::waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid == 0;
   }
   Outcome wait() {
     int status = 0;
@@ -101,7 +101,8 @@ inline std::string without_last_column(const std::string& table) {
 inline void write_scene(const std::filesystem::path& path, const std::string& mesh,
                         const std::string& body = "voxel_width = 1.0\nmaterial = \"thesis_flag\"\n",
                         const std::string& rest = "") {
-  write_bytes(path, "[time]\nduration = 0.25\n[[body]]\nname = \"b\"\nmesh = \"" + mesh + "\"\n" + body + rest);
+  write_bytes(path,
+              "[time]\nduration = 0.25\n[[body]]\nname = \"b\"\nmesh = \"" + mesh + "\"\n" + body + rest);
 }
 
 }  // namespace muslin::test

@@ -5,10 +5,9 @@
 #include <random>
 #include <thread>
 
+#include "apps/program.hpp"
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
-
-#include "apps/program.hpp"
 
 namespace muslin {
 namespace {
@@ -22,7 +21,9 @@ using test::Scratch;
 using test::two_corners;
 using testing::HasSubstr;
 
-nlohmann::json summary(const fs::path& directory) { return nlohmann::json::parse(bytes_of(directory / "run.json")); }
+nlohmann::json summary(const fs::path& directory) {
+  return nlohmann::json::parse(bytes_of(directory / "run.json"));
+}
 
 /// Every file of two runs is equal but for wall times.
 void expect_same_run(const fs::path& a, const fs::path& b) {
@@ -127,8 +128,8 @@ TEST(Program, ThreadsDoNotChangeABit) {
   Scratch scratch;
   const std::string scene = (test::scenes / "nylon_flag.toml").string();
   for (const char* threads : {"1", "2", "5"}) {
-    const Outcome outcome = run(scratch, {"run", scene, "-o", scratch / threads, "--frames", "2", "--quiet", "--threads",
-                                          threads, "--set", "body.0.voxel_width=0.02"});
+    const Outcome outcome = run(scratch, {"run", scene, "-o", scratch / threads, "--frames", "2", "--quiet",
+                                          "--threads", threads, "--set", "body.0.voxel_width=0.02"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     expect_same_run(scratch / "1", scratch / threads);
   }
@@ -148,8 +149,7 @@ TEST(Program, AFullDiskIsCode5AndTheRunGoesOnLater) {
   EXPECT_THAT(full.err, HasSubstr("--resume"));
   EXPECT_THAT(full.err, HasSubstr("flag."));
   EXPECT_EQ(summary(scratch / "run")["status"], "failed");
-  const Outcome exported =
-      run(scratch, {"export", scratch / "run", scratch / "some.pc2", "--quiet"});
+  const Outcome exported = run(scratch, {"export", scratch / "run", scratch / "some.pc2", "--quiet"});
   EXPECT_EQ(exported.code, 0) << exported.err;
   ASSERT_EQ(run(scratch, with(run_words(scratch / "run", 40), {"--resume"})).code, 0);
   expect_same_run(scratch / "straight", scratch / "run");
@@ -157,8 +157,9 @@ TEST(Program, AFullDiskIsCode5AndTheRunGoesOnLater) {
 
 TEST(Program, ADirectoryThatCannotBeWrittenIsCode5) {
   Scratch scratch;
-  for (const std::string& directory : {std::string("/proc/muslin"), two_corners, two_corners + "/below",
-                                       std::string("/dev/null/x"), (scratch / std::string(300, 'x')).string()}) {
+  for (const std::string& directory :
+       {std::string("/proc/muslin"), two_corners, two_corners + "/below", std::string("/dev/null/x"),
+        (scratch / std::string(300, 'x')).string()}) {
     const Outcome outcome = run(scratch, run_words(directory, 1));
     EXPECT_EQ(outcome.code, 5) << directory;
     EXPECT_THAT(outcome.err, testing::StartsWith("muslin: "));
@@ -167,9 +168,9 @@ TEST(Program, ADirectoryThatCannotBeWrittenIsCode5) {
 
 TEST(Program, ASolverThatCannotGoOnIsCode4WithTheFrameAndASavedState) {
   Scratch scratch;
-  const Outcome outcome = run(scratch, with(run_words(scratch / "run", 48),
-                                            {"--set", "solver.integrator=symplectic_euler", "--set",
-                                             "time.steps_per_frame=1"}));
+  const Outcome outcome =
+      run(scratch, with(run_words(scratch / "run", 48),
+                        {"--set", "solver.integrator=symplectic_euler", "--set", "time.steps_per_frame=1"}));
   ASSERT_EQ(outcome.code, 4) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("frame"));
   const auto json = summary(scratch / "run");

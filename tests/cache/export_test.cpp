@@ -233,7 +233,8 @@ TEST_F(Export, UsdaHasTimeSamplesUvsAndUnits) {
   const std::size_t points = text.find("points.timeSamples"),
                     velocities = text.find("velocities.timeSamples");
   expect_floats(numbers_behind(text, " 2: ", points), flat_points(run->points(0, SurfaceKind::skin, 2)));
-  expect_floats(numbers_behind(text, " 2: ", velocities), flat_points(run->velocities(0, SurfaceKind::skin, 2)));
+  expect_floats(numbers_behind(text, " 2: ", velocities),
+                flat_points(run->velocities(0, SurfaceKind::skin, 2)));
   EXPECT_EQ(numbers_behind(text, " 0: ", text.find("extent.timeSamples")),
             (std::vector<double>{0, 0, 0, 3, 2, 1}));
 }

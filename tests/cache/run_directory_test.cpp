@@ -15,11 +15,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "muslin/core/output_file.hpp"
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/run_reader.hpp"
 #include "muslin/cache/run_writer.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/output_file.hpp"
 
 namespace muslin {
 namespace {

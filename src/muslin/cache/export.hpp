@@ -10,7 +10,7 @@
 namespace muslin {
 
 struct ExportOptions {
-  std::string body;                 ///< empty: the only body (.usda: all of them)
+  std::string body;                         ///< empty: the only body (.usda: all of them)
   SurfaceKind surface = SurfaceKind::skin;  ///< not for .vtu, which shows the lattice
 };
 

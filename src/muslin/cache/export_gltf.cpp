@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "muslin/cache/export_formats.hpp"
-#include "muslin/core/output_file.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/output_file.hpp"
 
 namespace muslin {
 namespace {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "muslin/core/input_file.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/input_file.hpp"
 
 namespace muslin {
 

@@ -6,11 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "muslin/core/input_file.hpp"
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/tables.hpp"
 #include "muslin/cache/vtk_file.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/input_file.hpp"
 #include "muslin/io/mesh_file.hpp"
 
 namespace muslin {

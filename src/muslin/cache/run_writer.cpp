@@ -12,13 +12,13 @@
 #include <nlohmann/json.hpp>
 
 #include "muslin/cache/directory_lock.hpp"
-#include "muslin/core/input_file.hpp"
-#include "muslin/core/output_file.hpp"
 #include "muslin/cache/point_cache.hpp"
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/tables.hpp"
 #include "muslin/cache/vtk_file.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/input_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/describe.hpp"

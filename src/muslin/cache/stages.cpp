@@ -3,9 +3,9 @@
 #include <array>
 #include <limits>
 
-#include "muslin/core/output_file.hpp"
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/vtk_file.hpp"
+#include "muslin/core/output_file.hpp"
 #include "muslin/field/signed_distance.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/describe.hpp"

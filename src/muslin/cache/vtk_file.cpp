@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "muslin/core/error.hpp"
 #include "muslin/core/input_file.hpp"
 #include "muslin/core/output_file.hpp"
-#include "muslin/core/error.hpp"
 
 namespace muslin {
 namespace {

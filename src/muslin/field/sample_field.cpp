@@ -35,7 +35,8 @@ class Sampler {
     }
     bool inside = distance_.inside(centre);
     // What is known of the last sample: no surface within `clear` of it, unless nothing is known.
-    double clear = uniform ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+    double clear =
+        uniform ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
     SurfacePoint last_found = middle;
     double step = radius;
     bool x_forward = true, y_forward = true;

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "muslin/core/error.hpp"
-#include "muslin/io/binary_reader.hpp"
 #include "muslin/core/input_file.hpp"
+#include "muslin/io/binary_reader.hpp"
 #include "muslin/io/node_mesh.hpp"
 
 // Compiled here with hidden symbols, not linked: Debian's libdraco, which assimp brings along, exports

@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "muslin/core/error.hpp"
-#include "muslin/geometry/inspect.hpp"
-#include "muslin/io/assimp_reader.hpp"
 #include "muslin/core/input_file.hpp"
 #include "muslin/core/output_file.hpp"
+#include "muslin/geometry/inspect.hpp"
+#include "muslin/io/assimp_reader.hpp"
 #include "muslin/io/gltf_reader.hpp"
 #include "muslin/io/mesh_writers.hpp"
 #include "muslin/io/obj_reader.hpp"
