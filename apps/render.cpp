@@ -45,6 +45,8 @@ void render(RenderArguments arguments) {
                 "name a .mp4, a .png or a folder");
   RunReader reader(arguments.run);
   const int count = reader.frame_count();
+  if (count == 0)
+    throw Error(ErrorKind::input, {arguments.run}, "the run has no finished frame", "run the scene first");
   const bool one = suffix == ".png";
   if (arguments.frame >= count)
     throw Error(ErrorKind::usage, fmt::format("the run has no frame {}", arguments.frame),

@@ -43,7 +43,7 @@ TEST(CommandLine, UsageErrorsAreCode2AndPointTheWay) {
   };
   usage({}, "--help");
   usage({"rnu", two_corners}, "`run`");
-  usage({"frobnicate"}, "--help");
+  usage({"frobnicate"}, "one of `run`");
   usage({"run"}, "SCENE");
   usage({"run", two_corners, "--frame", "3"}, "`--frames`");
   usage({"run", two_corners, "--frames", "-3"}, "whole number");

@@ -168,9 +168,9 @@ TEST(Program, ADirectoryThatCannotBeWrittenIsCode5) {
 
 TEST(Program, ASolverThatCannotGoOnIsCode4WithTheFrameAndASavedState) {
   Scratch scratch;
-  const Outcome outcome =
-      run(scratch, with(run_words(scratch / "run", 48),
-                        {"--set", "solver.integrator=symplectic_euler", "--set", "time.steps_per_frame=1"}));
+  const Outcome outcome = run(scratch, with(run_words(scratch / "run", 48),
+                                            {"--set", "solver.integrator=symplectic_euler", "--set",
+                                             "time.steps_per_frame=1", "--set", "time.frame_rate=0.01"}));
   ASSERT_EQ(outcome.code, 4) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("frame"));
   const auto json = summary(scratch / "run");

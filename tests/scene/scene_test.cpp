@@ -338,7 +338,7 @@ TEST(Override, ErrorsNameTheOverride) {
       HasSubstr("--set time.duration=two: `duration` of `time` of the scene is \"two\"; give a number"));
   EXPECT_THAT(message(flag_body, {"body.falg.voxel_width=1"}), HasSubstr("did you mean `flag`?"));
   EXPECT_THAT(message(flag_body, {"body.1.voxel_width=1"}), HasSubstr("no entry 1 among 1"));
-  EXPECT_THAT(message(flag_body, {"body.flag.name.x=1"}), HasSubstr("nothing below a single value"));
+  EXPECT_THAT(message(flag_body, {"body.flag.name.x=1"}), HasSubstr("below a single value"));
   EXPECT_THAT(message(flag_body, {"body.flag.translate=[1, 2"}),
               HasSubstr("--set body.flag.translate=[1, 2: "));
   EXPECT_THAT(message(flag_body, {"time.duration=1\ntitle=\"x\""}), HasSubstr("give a number"));
@@ -368,7 +368,7 @@ TEST(Scene, AMaterialFileStandsBesideTheScene) {
 TEST(Scene, AMissingMaterialFileIsAFileErrorAtItsPlaceInTheScene) {
   EXPECT_THAT(
       message("[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nmaterial = 'mine.toml'\n", {}, ErrorKind::file),
-      HasSubstr("scene.toml:4:12: folder/mine.toml: no such file"));
+      HasSubstr("scene.toml:4:12: folder/mine.toml: cannot read: No such file"));
 }
 
 TEST(Scene, AMissingSceneIsAFileError) {

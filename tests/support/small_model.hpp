@@ -66,6 +66,7 @@ inline Model small_model(const SmallModelOptions& options = {}) {
   model.scene.title = "a small flag";
   model.scene.text = "title = \"a small flag\"\n";
   model.scene.resolved = R"({"title":"a small flag","body":[{"name":"flag","voxel_width":1.0}]})";
+  model.scene.bodies.emplace_back().name = "flag";
   model.scene.time = {1, options.frame_rate, options.steps_per_frame};
   model.scene.solver.integrator = options.integrator;
   model.scene.solver.tolerance = options.tolerance;

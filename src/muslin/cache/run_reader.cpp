@@ -43,6 +43,16 @@ struct BodyTracks {
   RunReader::LatticeShape shape;
 };
 
+bool is_text(const Json& object, const char* key) { return object.contains(key) && object[key].is_string(); }
+
+bool describes_run(const Json& run) {
+  return run.is_object() && run.contains("muslin") && is_text(run, "title") && is_text(run, "status") &&
+         run.contains("frame_rate") && run["frame_rate"].is_number() && run["frame_rate"] > 0.0 &&
+         run.contains("bodies") && run["bodies"].is_array() && !run["bodies"].empty() &&
+         std::all_of(run["bodies"].begin(), run["bodies"].end(),
+                     [](const Json& body) { return body.is_object() && is_text(body, "name"); });
+}
+
 }  // namespace
 
 const char* name_of(SurfaceKind surface) { return surface == SurfaceKind::skin ? "skin" : "contour"; }
@@ -72,17 +82,16 @@ RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
                 "name the directory that `muslin run` wrote");
   }
   parts.run = Json::parse(read_file(summary), nullptr, false);
-  if (!parts.run.is_object() || !parts.run.contains("muslin") || !parts.run.contains("bodies") ||
-      !parts.run.contains("frame_rate")) {
+  if (!describes_run(parts.run)) {
     throw Error(ErrorKind::input, {summary.string()}, "this does not describe a run of muslin",
                 "run the scene again");
   }
-  parts.title = parts.run.value("title", "");
-  parts.frame_rate = parts.run.value("frame_rate", 24.0);
+  parts.title = parts.run["title"];
+  parts.frame_rate = parts.run["frame_rate"];
   parts.diagnostics = read_diagnostics(parts.directory / "diagnostics.csv");
   std::size_t frames = parts.diagnostics.size();
   for (const Json& body : parts.run["bodies"]) {
-    parts.names.push_back(body.value("name", ""));
+    parts.names.push_back(body["name"]);
     const BodyFiles files = body_files(parts.names.back());
     const auto track = [&](const std::string& name) { return Track{Pc2Reader(parts.directory / name)}; };
     VtkVoxels voxels = read_voxels(parts.directory / files.lattice_mesh);
@@ -90,8 +99,11 @@ RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
                       track(files.contour_cache),
                       track(files.lattice_cache),
                       read_mesh(parts.directory / files.skin_mesh).mesh,
-                      read_mesh(parts.directory / files.contour_mesh).mesh,
+                      {},
                       {std::move(voxels.points), std::move(voxels.voxels)}};
+    // Where the voxels are far larger than the body, no contour lies between them.
+    if (tracks.contour.cache.points() > 0)
+      tracks.contour_mesh = read_mesh(parts.directory / files.contour_mesh).mesh;
     const auto fit = [&](const Track& points, std::size_t count, const std::string& file) {
       if (points.cache.points() != count) {
         throw Error(ErrorKind::input, {(parts.directory / file).string()},

@@ -125,6 +125,8 @@ class BodyBuilder {
                       "`threshold`",
                       100 * (1 - body_.lattice.coverage)));
     }
+    if (body_.contour.mesh.face_count() == 0)
+      say("it is too small for its voxels to have a contour; use a smaller `voxel_width`");
     if (body_.sheet && body_.thickness > 4 * width) {
       say(
           fmt::format("the sheet is {:.3g} voxels thick; a larger `voxel_width` or a smaller `thickness` is "

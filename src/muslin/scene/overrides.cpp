@@ -119,7 +119,9 @@ void apply_override(TomlValue& scene, const std::string& setting) {
       }
       at = next;
     } else {
-      throw Error(ErrorKind::input, place, "there is nothing below a single value", "shorten the key");
+      throw Error(ErrorKind::input, place,
+                  "`" + std::string(path) + "` is below a single value, which has no keys",
+                  "shorten the key, or set a table, such as material={base=\"cotton\",density=300}");
     }
   }
   const Place key_place = at->key_place;

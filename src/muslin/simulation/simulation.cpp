@@ -113,6 +113,16 @@ struct Simulation::Parts {
   [[noreturn]] void fail(const StepReport& report) const;
 };
 
+/// Farther from the origin than the distance to the sun is no place for cloth: it was shot there by a force
+/// or a speed that nobody meant. Caches hold floats, which end at 3e38 m.
+constexpr double farthest = 1.5e11;  // [m]
+
+int vertex_out_of_range(ConstVectors x) {
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (!(x[v].cwiseAbs().maxCoeff() <= farthest)) return static_cast<int>(v);
+  return -1;
+}
+
 Simulation::Parts::Parts(std::shared_ptr<const Model> the_model) : model(std::move(the_model)) {
   const std::size_t count = model->vertex_count();
   state.positions = model->rest_positions;
@@ -150,6 +160,8 @@ void Simulation::Parts::step() {
   const Tally start_tally = tally;
   try {
     advance_by(time().step(), 0);
+    const int lost = vertex_out_of_range(state.positions);
+    if (lost >= 0) throw StepFailure{{.worst_vertex = lost, .failure = "it flew farther than 1.5e11 m"}};
   } catch (const StepFailure& failure) {
     state = start;
     holds = start_holds;
