@@ -10,3 +10,12 @@
 #define MUSLIN_VECTOR_CODE
 #endif
 #define MUSLIN_INLINE [[gnu::always_inline]] inline
+
+/// Before a loop: no iteration reads what another one writes.
+#if defined(__clang__)
+#define MUSLIN_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define MUSLIN_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define MUSLIN_INDEPENDENT
+#endif

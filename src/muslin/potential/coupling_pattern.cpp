@@ -9,8 +9,8 @@ namespace muslin {
 namespace {
 
 constexpr int largest_slab_count = 64;
-constexpr int smallest_slab = 2048;  // vertices
-constexpr int reaches_per_slab = 4;  // a coupling between slabs is computed twice: keep them few
+constexpr int smallest_slab = 2048;   // vertices
+constexpr int reaches_per_slab = 4;   // a coupling between slabs is computed twice: keep them few
 constexpr int lines_per_group = 128;  // the same vector lanes at every step along the lines
 constexpr int vertices_per_task = 4096;
 

@@ -57,7 +57,7 @@ MUSLIN_VECTOR_CODE void apply_own(const std::uint16_t* c, float q, int n, Floats
 /// The same where the two ends' vertices are apart, so that nothing need be kept in between.
 MUSLIN_VECTOR_CODE void apply_apart(const std::uint16_t* __restrict c, float q, int n, Floats pa, Floats pb,
                                     Floats ya, Floats yb) {
-#pragma GCC ivdep
+  MUSLIN_INDEPENDENT
   for (int i = 0; i < n; ++i) {
     const float dx = pb.x[i] - pa.x[i], dy = pb.y[i] - pa.y[i], dz = pb.z[i] - pa.z[i];
     const float sx = whole(c[i]), sy = whole(c[n + i]), sz = whole(c[2 * n + i]);

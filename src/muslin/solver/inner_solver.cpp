@@ -14,7 +14,7 @@ constexpr std::size_t grain = 8192;
 /// x += alpha p, p = z + beta p.
 MUSLIN_VECTOR_CODE void advance(std::size_t begin, std::size_t end, float alpha, float beta, Floats x,
                                 Floats z, Floats p) {
-#pragma GCC ivdep
+  MUSLIN_INDEPENDENT
   for (std::size_t v = begin; v < end; ++v) {
     const float px = p.x[v], py = p.y[v], pz = p.z[v];
     x.x[v] += alpha * px, x.y[v] += alpha * py, x.z[v] += alpha * pz;

@@ -153,7 +153,7 @@ MUSLIN_VECTOR_CODE double dot(int n, Floats r, Floats z) {
 }
 
 MUSLIN_VECTOR_CODE void factor(int n, Floats au, Floats al, const std::uint8_t* fixed, Floats mu, Floats ml) {
-#pragma GCC ivdep
+  MUSLIN_INDEPENDENT
   for (int i = 0; i < n; ++i) {
     const float free = fixed[i] != 0 ? 0.0F : 1.0F;
     const Six m = inverse_factor({au.x[i], au.y[i], au.z[i], al.x[i], al.y[i], al.z[i]});
@@ -164,7 +164,7 @@ MUSLIN_VECTOR_CODE void factor(int n, Floats au, Floats al, const std::uint8_t* 
 
 MUSLIN_VECTOR_CODE void factor(int n, Floats au, Floats al, const std::uint8_t* fixed, CouplingStretch b,
                                Floats nu, Floats nl, Floats mu, Floats ml) {
-#pragma GCC ivdep
+  MUSLIN_INDEPENDENT
   for (int i = 0; i < n; ++i) {
     const float free = fixed[i] != 0 ? 0.0F : 1.0F;
     const Six coupling =
@@ -295,7 +295,7 @@ void gather(int steps, int lane, Floats r, float* to) {
 }
 
 MUSLIN_VECTOR_CODE void subtract(int n, float alpha, Floats q, Floats r) {
-#pragma GCC ivdep
+  MUSLIN_INDEPENDENT
   for (int i = 0; i < n; ++i) {
     r.x[i] -= alpha * q.x[i];
     r.y[i] -= alpha * q.y[i];
