@@ -1,4 +1,5 @@
 // muslin export RUN FILE
+#include <filesystem>
 #include <memory>
 
 #include "command.hpp"
@@ -30,7 +31,10 @@ void add_export(CLI::App& program) {
     ExportOptions options;
     options.body = a->body;
     options.surface = a->surface == "contour" ? SurfaceKind::contour : SurfaceKind::skin;
-    export_run(RunReader(a->run), a->file, options, line.progress());
+    const RunReader run(a->run);
+    const std::filesystem::path file(a->file);
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+    export_run(run, file, options, line.progress());
   });
 }
 

@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 
@@ -90,6 +91,9 @@ int run(int argc, char** argv) {
     return fail(problem + "; " + advice(program, argc, argv), static_cast<int>(ErrorKind::usage));
   } catch (const Error& error) {
     return fail(error.what(), static_cast<int>(error.kind()));
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(error.path1().string() + ": " + error.code().message() + "; check the path",
+                static_cast<int>(ErrorKind::file));
   } catch (const std::bad_alloc&) {
     return fail("out of memory; choose a larger voxel_width", static_cast<int>(ErrorKind::solver));
   } catch (const std::exception& error) {
