@@ -354,5 +354,16 @@ TEST_F(Folder, FailedWritesLeaveTheOldFile) {
   EXPECT_EQ(kind(folder_ / "folder.obj"), ErrorKind::file);
 }
 
+TEST(WriteMesh, ANameThatEndsWithABackslashDoesNotSwallowTheNextLine) {
+  Mesh mesh;
+  mesh.name = "cloth\\";
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.add_face(std::vector<int>{0, 1, 2});
+  mesh.groups.push_back({"hem\\", {0}, {0, 1, 2}});
+  const Mesh again = read_mesh_from(to_obj(mesh, mesh.positions), ".obj", "again").mesh;
+  EXPECT_EQ(again.positions, mesh.positions);
+  EXPECT_EQ(again.face_vertices, mesh.face_vertices);
+}
+
 }  // namespace
 }  // namespace muslin

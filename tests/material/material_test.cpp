@@ -96,7 +96,7 @@ TEST(MaterialFile, AMissingFileIsAFileError) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::file);
-    EXPECT_STREQ(error.what(), "/nowhere/m.toml: no such file; check the path");
+    EXPECT_STREQ(error.what(), "/nowhere/m.toml: cannot read: No such file or directory; check the path");
   }
 }
 

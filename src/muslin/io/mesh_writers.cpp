@@ -10,6 +10,12 @@
 namespace muslin {
 namespace {
 
+/// Ends a line of names: a backslash at its end would join it to the next line.
+void end_names(std::string& text) {
+  if (text.back() == '\\') text.back() = '_';
+  text += '\n';
+}
+
 template <class Number>
 void append(std::string& text, Number value) {
   char digits[40];
@@ -51,7 +57,9 @@ void append_vertex_groups(std::string& text, const Mesh& mesh) {
     std::set_difference(group.vertices.begin(), group.vertices.end(), of_faces.vertices.begin(),
                         of_faces.vertices.end(), std::back_inserter(points));
     if (points.empty()) continue;
-    text += "g " + one_word(group.name) + "\np";
+    text += "g " + one_word(group.name);
+    end_names(text);
+    text += 'p';
     for (const int v : points) {
       text += ' ';
       append(text, v + 1);
@@ -69,7 +77,8 @@ std::string to_obj(const Mesh& mesh, ConstVectors positions) {
     std::string name = mesh.name;
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    text += "o " + name + "\n";
+    text += "o " + name;
+    end_names(text);
   }
   for (const Vec3& position : positions) {
     text += 'v';
@@ -93,7 +102,7 @@ std::string to_obj(const Mesh& mesh, ConstVectors positions) {
         !std::equal(wanted.begin(), wanted.end(), active.begin(), active.end())) {
       text += 'g';
       for (const int g : wanted) text += ' ' + one_word(mesh.groups[static_cast<std::size_t>(g)].name);
-      text += '\n';
+      end_names(text);
       active = wanted;
     }
     text += 'f';
