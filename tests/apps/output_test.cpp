@@ -154,7 +154,9 @@ TEST_F(Pictures, ExportsEverySuffixAndRefusesOthers) {
   }
   EXPECT_EQ(run(scratch, {"export", the_run(), scratch / "a.abc"}).code, 2);
   EXPECT_EQ(run(scratch, {"export", the_run(), scratch / "a.pc2", "--surface", "bones"}).code, 2);
-  EXPECT_EQ(run(scratch, {"export", the_run(), scratch / "none/a.pc2", "--quiet"}).code, 5);
+  EXPECT_EQ(run(scratch, {"export", the_run(), scratch / "new/a.pc2", "--quiet"}).code, 0);
+  EXPECT_TRUE(fs::exists(scratch / "new/a.pc2"));
+  EXPECT_EQ(run(scratch, {"export", the_run(), scratch / "new/a.pc2/b.pc2", "--quiet"}).code, 5);
   fs::create_directory(scratch / "folder.pc2");
   EXPECT_EQ(run(scratch, {"export", the_run(), scratch / "folder.pc2", "--quiet"}).code, 5);
 }
