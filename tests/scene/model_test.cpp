@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "muslin/scene/describe.hpp"
 
@@ -22,7 +23,7 @@ using testing::HasSubstr;
 class ModelTest : public testing::Test {
  protected:
   static std::filesystem::path folder() {
-    return std::filesystem::temp_directory_path() / "muslin_model_test";
+    return std::filesystem::temp_directory_path() / ("muslin_model_test_" + std::to_string(getpid()));
   }
   static void SetUpTestSuite() {
     std::filesystem::create_directories(folder());

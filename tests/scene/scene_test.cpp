@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace muslin {
 namespace {
@@ -348,7 +349,8 @@ TEST(Override, ErrorsNameTheOverride) {
 }
 
 TEST(Scene, AMaterialFileStandsBesideTheScene) {
-  const auto folder = std::filesystem::temp_directory_path() / "muslin_scene_material";
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("muslin_scene_material_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "mine.toml") << "[lattice]\ndensity = 5\nedge_modulus = 6\n";
   std::ofstream(folder / "s.toml") << "[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nmaterial = 'mine.toml'\n";
