@@ -1,0 +1,54 @@
+// Stretch and shear of a shell: the orthotropic St. Venant-Kirchhoff membrane on linear triangles.
+//
+//   W = Σ ½ A (C₁₁ E_uu² + 2 C₁₂ E_uu E_vv + C₂₂ E_vv² + G (2 E_uv)²),   E = ½ (FᵀF − I),
+//
+// F = [a, b] the 3 by 2 deformation gradient: a and b are what became of a unit length of warp and weft. With
+// the plane-stress constants C₁₁ = K_u/(1−ν²), C₂₂ = K_v/(1−ν²), C₁₂ = ν √(K_u K_v)/(1−ν²) a strip pulled
+// along warp or weft, free to narrow, has the stiffness K_u or K_v. With S = (S_uu, S_vv, S_uv) the second
+// Piola-Kirchhoff stress [N/m],
+//
+//   dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db + b·da)).
+//
+// The exact Hessian adds the geometric stiffness S ⊗ I to the material one; the projected one takes the
+// positive semidefinite part of S there. docs/theory/shells.md.
+#pragma once
+
+#include <vector>
+
+#include "muslin/energy/element_slabs.hpp"
+#include "muslin/energy/shell_energy.hpp"
+#include "muslin/shell/shell.hpp"
+
+namespace muslin {
+
+/// Stiffnesses of a sheet: force per width and strain.
+struct MembraneModuli {
+  double warp = 0;     ///< K_u ≥ 0 [N/m]: Young's modulus × thickness along warp
+  double weft = 0;     ///< K_v ≥ 0 [N/m]
+  double shear = 0;    ///< G ≥ 0 [N/m]: force per width and radian
+  double poisson = 0;  ///< ν, the geometric mean of the two, −1 < ν < 1
+};
+
+class MembraneEnergy : public ShellEnergy {
+ public:
+  MembraneEnergy(const Shell& shell, const MembraneModuli& moduli);
+
+  double value(ConstVectors x) const override;
+  void add_gradient(ConstVectors x, Vectors g) const override;
+  void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
+  void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
+
+  /// Largest singular value of F over all triangles: the largest stretch in any direction.
+  double max_stretch(ConstVectors x) const;
+
+  struct Constants {
+    double c11 = 0, c12 = 0, c22 = 0, g = 0;  ///< [N/m]
+  };
+
+ private:
+  Constants constants_;
+  ElementSlabs<3> slabs_;
+  std::vector<double> rest_[5];  // by entry: the inverse rest edges (00, 10, 01, 11) [1/m] and the area [m²]
+};
+
+}  // namespace muslin

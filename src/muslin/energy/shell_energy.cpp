@@ -1,0 +1,71 @@
+#include "muslin/energy/shell_energy.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace muslin {
+namespace {
+
+/// W = ½ c (x − anchor)ᵀ K (x − anchor), K the material stiffness at `predicted`.
+class Dashpots : public Potential {
+ public:
+  Dashpots(std::shared_ptr<const ShellEnergy> energy, double factor, std::vector<Vec3> anchor,
+           std::vector<Vec3> predicted)
+      : energy_(std::move(energy)),
+        factor_(factor),
+        anchor_(std::move(anchor)),
+        predicted_(std::move(predicted)) {}
+
+  double value(ConstVectors x) const override {
+    const std::vector<Vec3> d = moved(x);
+    const std::vector<Vec3> force = product(d);
+    double sum = 0;
+    for (std::size_t v = 0; v < d.size(); ++v) sum += d[v].dot(force[v]);
+    return 0.5 * factor_ * sum;
+  }
+  void add_gradient(ConstVectors x, Vectors g) const override {
+    const std::vector<Vec3> force = product(moved(x));
+    for (std::size_t v = 0; v < g.size(); ++v) g[v] += factor_ * force[v];
+  }
+  void add_hessian_product(ConstVectors, ConstVectors p, Vectors y) const override {
+    const std::vector<Vec3> force = product(p);
+    for (std::size_t v = 0; v < y.size(); ++v) y[v] += factor_ * force[v];
+  }
+  void add_diagonal_blocks(ConstVectors, std::span<Mat3> blocks) const override {
+    std::vector<Mat3> own(blocks.size(), Mat3::Zero());
+    energy_->add_stiffness_blocks(Stiffness::material, predicted_, own);
+    for (std::size_t v = 0; v < blocks.size(); ++v) blocks[v] += factor_ * own[v];
+  }
+
+ private:
+  std::vector<Vec3> moved(ConstVectors x) const {
+    std::vector<Vec3> d(x.size());
+    for (std::size_t v = 0; v < d.size(); ++v) d[v] = x[v] - anchor_[v];
+    return d;
+  }
+  std::vector<Vec3> product(ConstVectors p) const {
+    std::vector<Vec3> y(p.size(), Vec3::Zero());
+    energy_->add_stiffness_product(Stiffness::material, predicted_, p, y);
+    return y;
+  }
+
+  std::shared_ptr<const ShellEnergy> energy_;
+  double factor_;
+  std::vector<Vec3> anchor_;
+  std::vector<Vec3> predicted_;
+};
+
+}  // namespace
+
+ShellDamping::ShellDamping(std::shared_ptr<const ShellEnergy> energy, double beta)
+    : energy_(std::move(energy)), beta_(beta) {}
+
+std::unique_ptr<Potential> ShellDamping::potential(const StepContext& step) const {
+  if (beta_ == 0) return nullptr;
+  std::vector<Vec3> predicted(step.positions.begin(), step.positions.end());
+  for (std::size_t v = 0; v < predicted.size(); ++v)
+    predicted[v] += (step.velocity_time - step.time_begin) * step.velocities[v];
+  return std::make_unique<Dashpots>(energy_, beta_ / step.dt, step.anchor, std::move(predicted));
+}
+
+}  // namespace muslin

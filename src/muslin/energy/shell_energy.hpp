@@ -1,0 +1,76 @@
+// What the energies of a shell have in common: three kinds of stiffness, and damping made from one of them.
+#pragma once
+
+#include <memory>
+
+#include "muslin/potential/potential.hpp"
+
+namespace muslin {
+
+/// Which part of ∂²W/∂x² is meant. With W = ½ k s(x)², s a strain or an angle, it is k ∇s∇sᵀ + k s ∇²s.
+enum class Stiffness {
+  material,   ///< the first term alone: what resists a change of strain; positive semidefinite
+  projected,  ///< and of the second what pulls but not what buckles; positive semidefinite
+  exact,      ///< both
+};
+
+/// An elastic energy of a shell. Its Hessian is exact; what it gives the inner solver and the preconditioner
+/// is projected: thin cloth buckles everywhere, and conjugate gradients stopped at every negative curvature
+/// get nowhere (docs/theory/shells.md).
+class ShellEnergy : public Potential {
+ public:
+  ShellEnergy() : projected_(*this) {}
+
+  /// y += K p, K the stiffness of this kind at x, #V by 3.
+  virtual void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const = 0;
+  /// blocks[v] += the diagonal blocks of K; `kind` is material or projected.
+  virtual void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const = 0;
+
+  void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override {
+    add_stiffness_product(Stiffness::exact, x, p, y);
+  }
+  void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override {
+    add_stiffness_blocks(Stiffness::projected, x, blocks);
+  }
+  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
+    into.add_general(projected_, first, x);
+  }
+
+ private:
+  /// The same energy with the projected Hessian.
+  class Projected : public Potential {
+   public:
+    explicit Projected(const ShellEnergy& energy) : energy_(energy) {}
+    double value(ConstVectors x) const override { return energy_.value(x); }
+    void add_gradient(ConstVectors x, Vectors g) const override { energy_.add_gradient(x, g); }
+    void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override {
+      energy_.add_stiffness_product(Stiffness::projected, x, p, y);
+    }
+    void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override {
+      energy_.add_diagonal_blocks(x, blocks);
+    }
+
+   private:
+    const ShellEnergy& energy_;
+  };
+
+  Projected projected_;
+};
+
+/// Dashpots beside the elastic forces, Rayleigh's stiffness-proportional damping: the force −β K v with K
+/// the material stiffness at the positions predicted for the time the step's velocity belongs to
+/// (StepContext::velocity_time) and v = (x − anchor) / dt. K does not resist rigid motions, so that falling
+/// freely is not damped at all, turning only by the prediction's error, and W = β (x − anchor)ᵀ K (x −
+/// anchor) / (2 dt) is quadratic.
+class ShellDamping : public Load {
+ public:
+  /// beta [s] ≥ 0.
+  ShellDamping(std::shared_ptr<const ShellEnergy> energy, double beta);
+  std::unique_ptr<Potential> potential(const StepContext& step) const override;
+
+ private:
+  std::shared_ptr<const ShellEnergy> energy_;
+  double beta_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,194 @@
+#include "muslin/shell/shell.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+namespace {
+
+// A triangle this flat (twice its area over its longest edge squared) has no direction to bend in.
+constexpr double flattest = 1e-9;
+// Below this length of its projection (of a unit vector) a direction says nothing about a face.
+constexpr double shortest_projection = 1e-3;
+
+/// The side of a triangle from corner `corner` to the next.
+struct Side {
+  int low = 0, high = 0;  // vertices, low < high
+  int triangle = 0, corner = 0;
+};
+
+class ShellBuilder {
+ public:
+  ShellBuilder(const Mesh& mesh, ConstVectors rest, const Weave& weave)
+      : mesh_(mesh), rest_(rest), weave_(weave) {
+    assert(rest.size() == mesh.vertex_count());
+  }
+
+  Shell build() {
+    Triangulation cut = triangulate(mesh_);
+    shell_.triangles = std::move(cut.triangles);
+    shell_.faces = std::move(cut.faces);
+    shell_.vertex_areas.assign(mesh_.vertex_count(), 0.0);
+    for (std::size_t t = 0; t < shell_.triangles.size(); ++t) add_triangle(t);
+    for (std::size_t v = 0; v < shell_.vertex_areas.size(); ++v) {
+      if (shell_.vertex_areas[v] > 0) continue;
+      throw Error(ErrorKind::input,
+                  fmt::format("vertex {} belongs to no polygon, so as part of a shell it has no mass", v + 1),
+                  "delete loose vertices in the modeller");
+    }
+    add_hinges();
+    return std::move(shell_);
+  }
+
+ private:
+  const Vec3& rest(int v) const { return rest_[static_cast<std::size_t>(v)]; }
+
+  void add_triangle(std::size_t t) {
+    const Vec3i& v = shell_.triangles[t];
+    const Vec3 e1 = rest(v[1]) - rest(v[0]), e2 = rest(v[2]) - rest(v[0]);
+    const Vec3 twice = e1.cross(e2);
+    const double longest = std::max({e1.squaredNorm(), e2.squaredNorm(), (e2 - e1).squaredNorm()});
+    if (!(twice.norm() > flattest * longest)) {
+      throw Error(ErrorKind::input,
+                  fmt::format("polygon {} has a triangle without area (vertices {}, {}, {})",
+                              shell_.faces[t] + 1, v[0] + 1, v[1] + 1, v[2] + 1),
+                  "merge or dissolve degenerate polygons in the modeller");
+    }
+    const Vec3 normal = twice.normalized();
+    const Vec3 warp = warp_of(t, e1, e2, normal);
+    const Vec3 weft = normal.cross(warp);
+    Mat2 edges;
+    edges << warp.dot(e1), warp.dot(e2), weft.dot(e1), weft.dot(e2);
+    const double area = twice.norm() / 2;
+    shell_.inverses.push_back(edges.inverse());
+    shell_.areas.push_back(area);
+    shell_.area += area;
+    warps_.push_back(warp);
+    for (int c = 0; c < 3; ++c) shell_.vertex_areas[static_cast<std::size_t>(v[c])] += area / 3;
+  }
+
+  Vec3 warp_of(std::size_t t, const Vec3& e1, const Vec3& e2, const Vec3& normal) {
+    if (!weave_.warp) return warp_from_texture(t, e1, e2, normal);
+    Vec3 warp = *weave_.warp - weave_.warp->dot(normal) * normal;
+    if (warp.norm() < shortest_projection * weave_.warp->norm()) {
+      ++shell_.odd_faces;
+      int axis;
+      normal.cwiseAbs().minCoeff(&axis);
+      warp = Vec3::Unit(axis) - normal[axis] * normal;
+    }
+    return warp.normalized();
+  }
+
+  /// Where u grows fastest along the triangle: with the texture's edges U (columns) and those of the
+  /// triangle E, ∂x/∂u = E U⁻¹ (1, 0).
+  Vec3 warp_from_texture(std::size_t t, const Vec3& e1, const Vec3& e2, const Vec3& normal) const {
+    const auto uv = uvs_of(t);
+    const Vec2 u1 = uv[1] - uv[0], u2 = uv[2] - uv[0];
+    const double area = u1.x() * u2.y() - u1.y() * u2.x();
+    const double longest = std::max(u1.squaredNorm(), u2.squaredNorm());
+    if (!(std::abs(area) > flattest * longest)) {
+      throw Error(ErrorKind::input,
+                  fmt::format("polygon {} has no area in the texture, so its threads have no direction",
+                              shell_.faces[t] + 1),
+                  "unwrap it, or give `warp` a direction");
+    }
+    const Vec3 along = (e1 * u2.y() - e2 * u1.y()) / area;
+    return (along - along.dot(normal) * normal).normalized();
+  }
+
+  std::array<Vec2, 3> uvs_of(std::size_t t) const {
+    const auto f = static_cast<std::size_t>(shell_.faces[t]);
+    const auto face = mesh_.face(f);
+    std::array<Vec2, 3> uv;
+    for (int c = 0; c < 3; ++c) {
+      const auto at = std::find(face.begin(), face.end(), shell_.triangles[t][c]) - face.begin();
+      const auto corner = static_cast<std::size_t>(mesh_.face_offsets[f] + at);
+      const int index = corner < mesh_.corner_uvs.size() ? mesh_.corner_uvs[corner] : -1;
+      if (index < 0) {
+        throw Error(ErrorKind::input, fmt::format("polygon {} has no texture coordinates", f + 1),
+                    "unwrap the mesh, or give `warp` a direction");
+      }
+      uv[static_cast<std::size_t>(c)] = mesh_.uvs[static_cast<std::size_t>(index)];
+    }
+    return uv;
+  }
+
+  void add_hinges() {
+    std::vector<Side> sides;
+    sides.reserve(3 * shell_.triangles.size());
+    for (std::size_t t = 0; t < shell_.triangles.size(); ++t) {
+      for (int c = 0; c < 3; ++c) {
+        const auto [low, high] = std::minmax(shell_.triangles[t][c], shell_.triangles[t][(c + 1) % 3]);
+        sides.push_back({low, high, static_cast<int>(t), c});
+      }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
+      return std::tuple(p.low, p.high, p.triangle) < std::tuple(q.low, q.high, q.triangle);
+    });
+    std::size_t edges = 0;
+    for (std::size_t i = 0; i < sides.size();) {
+      std::size_t j = i;
+      while (j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high) ++j;
+      ++edges;
+      shell_.mean_edge += (rest(sides[i].high) - rest(sides[i].low)).norm();
+      if (j - i > 2) refuse_junction(sides[i], j - i);
+      if (j - i == 2) add_hinge(sides[i], sides[i + 1]);
+      i = j;
+    }
+    shell_.mean_edge /= static_cast<double>(edges);
+  }
+
+  [[noreturn]] void refuse_junction(const Side& side, std::size_t count) const {
+    throw Error(
+        ErrorKind::input,
+        fmt::format("the edge between vertices {} and {} is shared by {} triangles, one of polygon "
+                    "{}; a shell's edges have one or two",
+                    side.low + 1, side.high + 1, count,
+                    shell_.faces[static_cast<std::size_t>(side.triangle)] + 1),
+        "separate the extra polygons in the modeller (Blender: Select > All by Trait > Non Manifold)");
+  }
+
+  void add_hinge(const Side& first, const Side& second) {
+    const auto t1 = static_cast<std::size_t>(first.triangle), t2 = static_cast<std::size_t>(second.triangle);
+    const Vec3i& v = shell_.triangles[t1];
+    Hinge hinge;
+    hinge.vertices = {v[first.corner], v[(first.corner + 1) % 3], v[(first.corner + 2) % 3],
+                      shell_.triangles[t2][(second.corner + 2) % 3]};
+    const Vec3 edge = rest(hinge.vertices[1]) - rest(hinge.vertices[0]);
+    hinge.length = edge.norm();
+    hinge.area = shell_.areas[t1] + shell_.areas[t2];
+    hinge.angle = hinge_angle(rest(hinge.vertices[0]), rest(hinge.vertices[1]), rest(hinge.vertices[2]),
+                              rest(hinge.vertices[3]));
+    // What bends is across the edge: cos² of its angle with warp is sin² of that between edge and warp.
+    const auto share = [&](std::size_t t) { return 1 - std::pow(edge.dot(warps_[t]) / hinge.length, 2); };
+    hinge.warp_share =
+        std::clamp((share(t1) * shell_.areas[t1] + share(t2) * shell_.areas[t2]) / hinge.area, 0.0, 1.0);
+    shell_.hinges.push_back(hinge);
+  }
+
+  const Mesh& mesh_;
+  ConstVectors rest_;
+  const Weave& weave_;
+  Shell shell_;
+  std::vector<Vec3> warps_;  // #T
+};
+
+}  // namespace
+
+Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave) {
+  return ShellBuilder(mesh, rest_positions, weave).build();
+}
+
+double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3) {
+  const Vec3 e = x1 - x0;
+  const Vec3 n1 = e.cross(x2 - x0), n2 = (x3 - x0).cross(e);
+  return std::atan2(n1.cross(n2).dot(e.normalized()), n1.dot(n2));
+}
+
+}  // namespace muslin

@@ -1,0 +1,59 @@
+// A triangle mesh as thin cloth: triangles with the directions of their threads, hinges between them.
+//
+// Threads run in two directions, warp and weft, at right angles in the cloth at rest. A triangle knows its
+// rest shape in these coordinates, so that F = [x₁−x₀, x₂−x₀] `inverse` is the 3 by 2 deformation gradient
+// whose columns are what became of a unit length of warp and of weft.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/geometry/mesh.hpp"
+
+namespace muslin {
+
+using Mat2 = Eigen::Matrix2d;
+
+/// Two triangles that share the edge of vertices 0 and 1; vertices 2 and 3 are opposite to it.
+struct Hinge {
+  std::array<int, 4> vertices{};
+  double length = 0;      ///< of the edge at rest [m]
+  double area = 0;        ///< of both triangles at rest [m²]
+  double angle = 0;       ///< between the normals at rest, −π … π
+  double warp_share = 0;  ///< cos² of the angle between warp and the direction that bends, across the edge
+};
+
+struct Shell {
+  std::vector<Vec3i> triangles;      ///< #T, of the mesh's vertices
+  std::vector<int> faces;            ///< #T, the polygon each comes from
+  std::vector<double> areas;         ///< #T, at rest [m²]
+  std::vector<Mat2> inverses;        ///< #T, inverse of the rest edges (columns) in (warp, weft) [1/m]
+  std::vector<Hinge> hinges;         ///< of every edge with two triangles
+  std::vector<double> vertex_areas;  ///< #V, a third of each adjacent triangle at rest [m²]
+  double area = 0;                   ///< at rest [m²]
+  double mean_edge = 0;              ///< at rest [m]
+  std::size_t odd_faces = 0;  ///< triangles perpendicular to the warp given, so that it was chosen anew
+
+  std::size_t vertex_count() const { return vertex_areas.size(); }
+};
+
+/// How the threads lie on the rest shape.
+struct Weave {
+  /// Warp, projected onto every face. Without it warp is where the texture's u grows.
+  std::optional<Vec3> warp;
+};
+
+/// `rest_positions` (#V of the mesh by 3) is the shape without stress. Errors: input, naming the polygon and
+/// the vertices (counted from 1), for edges with more than two polygons, triangles without area, vertices of
+/// no polygon, and texture coordinates that are missing or without area where they are needed.
+Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave);
+
+/// The angle of a hinge: 0 if flat, positive if vertices 2 and 3 turn away from the normal
+/// (x₁−x₀)×(x₂−x₀), −π … π.
+double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
+
+}  // namespace muslin
