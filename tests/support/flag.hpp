@@ -1,5 +1,5 @@
-// The thesis's flag as a solver problem: 10 × 6 × 1 voxels (or any other size) of width 1 m, 10 kg/m³,
-// springs of 20000/100/100 N/m, gravity −9.8 m/s².
+// The thesis's flag as a solver problem: 10 × 6 × 1 voxels of width 1 m (or any other size and width), 10
+// kg/m³, springs of 20000/100/100 N/m² × width, gravity −9.8 m/s².
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,13 @@ struct Flag {
   std::shared_ptr<const UniformGravity> gravity;
   State state;
 
-  explicit Flag(const Vec3i& extent = {10, 6, 1}, const std::array<double, 3>& moduli = {20000, 100, 100})
-      : lattice(box_lattice(extent)), rest(rest_positions(lattice)), masses(rest.size(), 0) {
+  explicit Flag(const Vec3i& extent = {10, 6, 1}, const std::array<double, 3>& moduli = {20000, 100, 100},
+                double width = 1)
+      : lattice(box_lattice(extent, width)), rest(rest_positions(lattice)), masses(rest.size(), 0) {
     for (const auto& corners : lattice.voxel_vertices) {
-      for (const int v : corners) masses[static_cast<std::size_t>(v)] += 10.0 / 8;
+      for (const int v : corners) masses[static_cast<std::size_t>(v)] += 10.0 / 8 * width * width * width;
     }
-    springs = std::make_shared<SpringEnergy>(build_springs(lattice, Bracing::kuhn), 1, moduli);
+    springs = std::make_shared<SpringEnergy>(build_springs(lattice, Bracing::kuhn), width, moduli);
     gravity = std::make_shared<UniformGravity>(masses, Vec3(0, -9.8, 0));
     fixed.assign(rest.size(), 0);
     targets = rest;
