@@ -1,39 +1,23 @@
 // Time per step of muslin and of the textbook method to a given error, on the same problems in one run.
 //
-// Every case takes one step from the same state with one tolerance; its counters give the error against a
-// tightly solved step, ‖x − x*‖ / ‖x* − x_n‖, and the least time of its repetitions. bench/run picks, for
-// either method, the least time whose error is at most 1e-3 and 1e-6. Run with --benchmark_filter=… to
-// choose.
-#include <algorithm>
-#include <chrono>
+// muslin takes every step with a row of tolerances; the counters of each give the error against a tightly
+// solved step, ‖x − x*‖ / ‖x* − x_n‖, residual and energy (both by the textbook's own formulas), and the
+// least time of its repetitions. The textbook method is watched on its way: its counters give the time at
+// which an iterate first was good enough, without the time of finding out. bench/run makes the tables of it.
 #include <cmath>
-#include <ctime>
 #include <map>
 #include <string>
 
+#include "clock.hpp"
+#include "parts.hpp"
 #include "problems.hpp"
 #include "triad.hpp"
 #include <benchmark/benchmark.h>
-
-#include "muslin/core/parallel.hpp"
 
 namespace muslin::bench {
 namespace {
 
 constexpr double gravity = 9.8;  // [m/s²]: tolerances are multiples of it
-
-const std::vector<ProblemSettings> cases = {
-    {"flag_10x6", {10, 6, 1}, 1, 1.0 / 240, false, 240},
-    {"flag_100x60", {100, 60, 1}, 0.1, 1.0 / 240, false, 200},
-    {"crumpled_100x60", {100, 60, 1}, 0.1, 1.0 / 240, true, 2},
-    {"flag_400x240", {400, 240, 1}, 0.025, 1.0 / 240, false, 60},
-    {"flag_1000x600", {1000, 600, 1}, 0.01, 1.0 / 240, false, 6},
-    {"cube_20", {20, 20, 20}, 0.2, 1.0 / 240, false, 20},
-    {"cube_40", {40, 40, 40}, 0.1, 1.0 / 240, false, 10},
-    {"cube_80", {80, 80, 80}, 0.05, 1.0 / 240, false, 4},
-    {"long_100x60", {100, 60, 1}, 0.1, 1.0 / 24, false, 6},
-    {"long_400x240", {400, 240, 1}, 0.025, 1.0 / 24, false, 3},
-};
 
 double norm(ConstVectors a, ConstVectors b) {
   double sum = 0;
@@ -44,15 +28,24 @@ double norm(ConstVectors a, ConstVectors b) {
 /// The problem and its tight solution, made when first asked for; the last one only is kept.
 struct Reference {
   Problem problem;
+  std::unique_ptr<TextbookSolver> textbook;
   std::vector<Vec3> solution;
-  double scale = 0;  ///< ‖x* − x_n‖
+  double scale = 0;        ///< ‖x* − x_n‖
+  double energy_drop = 0;  ///< of E from x_n to x*
+
+  TextbookMeasure measure(ConstVectors x) const {
+    return textbook->measure(problem.state.positions, problem.state.velocities, x);
+  }
+  double error(ConstVectors x) const { return norm(x, solution) / scale; }
 
   static const Reference& of(const ProblemSettings& settings) {
     static std::string name;
     static Reference reference;
     if (name == settings.name) return reference;
+    name.clear();
+    reference = {};
     reference.problem = make_problem(settings);
-    name = settings.name;
+    reference.textbook = std::make_unique<TextbookSolver>(reference.problem.textbook());
     State state = reference.problem.state;
     SolverSettings tight;
     tight.tolerance = 1e-6 * gravity;
@@ -62,94 +55,173 @@ struct Reference {
     if (!report.converged) throw std::runtime_error(settings.name + ": no reference, " + report.failure);
     reference.solution = state.positions;
     reference.scale = norm(reference.solution, reference.problem.state.positions);
+    reference.energy_drop = reference.measure(reference.problem.state.positions).energy -
+                            reference.measure(state.positions).energy;
+    name = settings.name;
     return reference;
   }
 };
 
-template <class Step>
-void measure(benchmark::State& state, const ProblemSettings& settings, const Step& step) {
-  const Reference& reference = Reference::of(settings);
-  double best = INFINITY, error = 0;
-  for (auto _ : state) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::clock_t used = std::clock();
-    const auto [x, newton, linear] = step(reference.problem);
-    const double busy = static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
-    const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    // On a machine that is shared, the processor time of one thread is the better clock.
-    const double seconds = thread_count() == 1 && passed > 1e-3 ? std::min(busy, passed) : passed;
-    best = std::min(best, seconds);
-    state.SetIterationTime(seconds);
-    error = reference.scale > 0 ? norm(x, reference.solution) / reference.scale : 0;
-    state.counters["newton"] = newton;
-    state.counters["linear"] = linear;
-  }
-  state.counters["best_ms"] = 1e3 * best;
-  state.counters["error"] = error;
+void describe(benchmark::State& state, const Reference& reference) {
   state.counters["vertices"] = static_cast<double>(reference.problem.masses.size());
   state.counters["voxels"] = static_cast<double>(reference.problem.lattice.voxel_count());
   state.counters["stiffness_number"] = reference.problem.stiffness_number();
+  state.counters["compressed"] = reference.problem.compressed_share();
 }
 
-struct Outcome {
-  std::vector<Vec3> x;
-  int newton, linear;
-};
+void describe(benchmark::State& state, const Reference& reference, const Least& time) {
+  state.SetIterationTime(time.wall);
+  state.counters["ms"] = 1e3 * time.seconds;
+  state.counters["wall_ms"] = 1e3 * time.wall;
+  describe(state, reference);
+}
 
-void muslin_step(benchmark::State& state, const ProblemSettings& settings, double tolerance, int threads) {
+/// What came out of a step.
+void describe(benchmark::State& state, const Reference& reference, ConstVectors result) {
+  const TextbookMeasure measure = reference.measure(result);
+  state.counters["error"] = reference.error(result);
+  state.counters["residual"] = measure.residual / gravity;
+  state.counters["energy"] =
+      (measure.energy - reference.measure(reference.solution).energy) / reference.energy_drop;
+}
+
+void take_steps(benchmark::State& state, const ProblemSettings& settings, const SolverSettings& solver,
+                int threads) {
+  const Reference& reference = Reference::of(settings);
+  const Problem& problem = reference.problem;
   set_thread_count(threads);
-  Stepper stepper;
-  measure(state, settings, [&](const Problem& problem) {
-    State s = problem.state;
-    SolverSettings solver;
-    solver.tolerance = tolerance * gravity;
-    solver.max_iterations = 1000;
-    const StepContext context = step_context(solver.integrator, s, problem.dt);
-    const StepReport report = stepper.step(solver, context, problem.step_problem(), s);
+  for (auto _ : state) {
+    Stepper stepper;
+    State after;
+    StepReport report;
+    const Least time = Least::of([&] {
+      after = problem.state;
+      const StepContext context = step_context(solver.integrator, after, problem.dt);
+      report = stepper.step(solver, context, problem.step_problem(), after);
+    });
     if (!report.converged) state.SkipWithError(report.failure.c_str());
-    return Outcome{std::move(s.positions), report.newton_iterations, report.linear_iterations};
-  });
-  state.counters["bytes_per_vertex"] =
-      static_cast<double>(stepper.bytes()) / state.counters["vertices"].value;
+    describe(state, reference, time);
+    state.counters["newton"] = report.newton_iterations;
+    state.counters["linear"] = report.linear_iterations;
+    state.counters["bytes_per_vertex"] =
+        static_cast<double>(stepper.bytes()) / static_cast<double>(problem.masses.size());
+    describe(state, reference, after.positions);
+  }
   set_thread_count(0);
 }
 
-void textbook_step(benchmark::State& state, const ProblemSettings& settings, double tolerance) {
-  TextbookSolver solver(Reference::of(settings).problem.textbook());
-  set_thread_count(1);
-  measure(state, settings, [&](const Problem& problem) {
-    std::vector<Vec3> x = problem.state.positions, v = problem.state.velocities;
-    const TextbookReport report = solver.implicit_euler(tolerance * gravity, 0.1, x, v);
-    if (!report.converged) state.SkipWithError("not converged");
-    return Outcome{std::move(x), report.newton_iterations, report.linear_iterations};
-  });
-  state.counters["bytes_per_vertex"] = static_cast<double>(solver.bytes()) / state.counters["vertices"].value;
+void muslin_step(benchmark::State& state, const ProblemSettings& settings, double tolerance, int threads) {
+  SolverSettings solver;
+  solver.tolerance = tolerance * gravity;
+  solver.max_iterations = 1000;
+  take_steps(state, settings, solver, threads);
 }
 
 /// Vega's case: one linearly implicit step, conjugate gradients to 1e-6.
 void muslin_linear(benchmark::State& state, const ProblemSettings& settings, int threads) {
-  set_thread_count(threads);
-  Stepper stepper;
-  measure(state, settings, [&](const Problem& problem) {
-    State s = problem.state;
-    SolverSettings solver;
-    solver.integrator = Integrator::linearly_implicit_euler;
-    const StepContext context = step_context(solver.integrator, s, problem.dt);
-    const StepReport report = stepper.step(solver, context, problem.step_problem(), s);
-    if (!report.converged) state.SkipWithError(report.failure.c_str());
-    return Outcome{std::move(s.positions), report.newton_iterations, report.linear_iterations};
-  });
+  SolverSettings solver;
+  solver.integrator = Integrator::linearly_implicit_euler;
+  take_steps(state, settings, solver, threads);
+}
+
+/// When the textbook's iterates first were how good, as counters "error<e>_ms" and "residual<r>_ms" with
+/// "…_newton" and "…_linear". Finding out is not counted.
+class Milestones {
+ public:
+  explicit Milestones(const Reference& reference) : reference_(reference) {}
+
+  void begin() {
+    clock_ = Clock();
+    paused_ = 0;
+  }
+  double seconds() const { return clock_.seconds() - paused_; }
+
+  /// True when all there is to reach is reached. Where the error stays, because the method is on its way to
+  /// another minimum, that is when the residual is out of the question.
+  bool note(ConstVectors x, const TextbookReport& report) {
+    const double now = seconds();
+    const Clock pause;
+    const double error = reference_.error(x), residual = report.residual / gravity;
+    mark("error1e-3", error <= 1e-3, now, report);
+    mark("error1e-6", error <= 1e-6, now, report);
+    mark("residual1e-0", residual <= 1, now, report);
+    mark("residual1e-3", residual <= 1e-3, now, report);
+    paused_ += pause.seconds();
+    return (error <= 1e-6 && residual <= 1e-3) || residual <= 1e-6;
+  }
+
+  const std::map<std::string, double>& counters() const { return counters_; }
+
+ private:
+  void mark(const std::string& goal, bool good, double now, const TextbookReport& report) {
+    if (!good) return;
+    const auto [newton, first] = counters_.try_emplace(goal + "_newton", report.newton_iterations);
+    if (!first && newton->second < report.newton_iterations) return;
+    counters_[goal + "_linear"] = report.linear_iterations;
+    const auto [time, added] = counters_.try_emplace(goal + "_ms", 1e3 * now);
+    time->second = std::min(time->second, 1e3 * now);
+  }
+
+  const Reference& reference_;
+  Clock clock_;
+  double paused_ = 0;
+  std::map<std::string, double> counters_;
+};
+
+/// One step with linear systems solved to the relative residual `forcing`, given up after `limit` seconds.
+void textbook_step(benchmark::State& state, const ProblemSettings& settings, double forcing, double limit) {
+  const Reference& reference = Reference::of(settings);
+  const State& start = reference.problem.state;
+  set_thread_count(1);
+  for (auto _ : state) {
+    Milestones milestones(reference);
+    std::vector<Vec3> x;
+    const auto watch = [&](ConstVectors now, const TextbookReport& report) {
+      return milestones.note(now, report);
+    };
+    const auto give_up = [&] { return milestones.seconds() > limit; };
+    const Least time = Least::of([&] {
+      std::vector<Vec3> v = start.velocities;
+      x = start.positions;
+      milestones.begin();
+      reference.textbook->implicit_euler(forcing, watch, give_up, x, v);
+      state.counters["spent_ms"] = 1e3 * milestones.seconds();
+    });
+    describe(state, reference, time);
+    for (const auto& [name, value] : milestones.counters()) state.counters[name] = value;
+    state.counters["bytes_per_vertex"] =
+        static_cast<double>(reference.textbook->bytes()) / static_cast<double>(start.positions.size());
+    describe(state, reference, x);
+  }
   set_thread_count(0);
 }
 
 void textbook_linear(benchmark::State& state, const ProblemSettings& settings) {
-  TextbookSolver solver(Reference::of(settings).problem.textbook());
+  const Reference& reference = Reference::of(settings);
   set_thread_count(1);
-  measure(state, settings, [&](const Problem& problem) {
-    std::vector<Vec3> x = problem.state.positions, v = problem.state.velocities;
-    const TextbookReport report = solver.linearly_implicit_euler(1e-6, x, v);
-    return Outcome{std::move(x), report.newton_iterations, report.linear_iterations};
-  });
+  for (auto _ : state) {
+    TextbookReport report;
+    const Least time = Least::of([&] {
+      std::vector<Vec3> x = reference.problem.state.positions, v = reference.problem.state.velocities;
+      report = reference.textbook->linearly_implicit_euler(1e-6, x, v);
+    });
+    describe(state, reference, time);
+    state.counters["linear"] = report.linear_iterations;
+  }
+  set_thread_count(0);
+}
+
+/// Nanoseconds per vertex and call of what a step is made of, on one thread.
+void parts(benchmark::State& state, const ProblemSettings& settings) {
+  const Problem problem = make_problem(settings);
+  set_thread_count(1);
+  for (auto _ : state) {
+    const Clock clock;
+    for (const auto& [name, value] : parts_of_a_step(problem)) state.counters[name] = value;
+    state.SetIterationTime(clock.wall());
+  }
+  state.counters["vertices"] = static_cast<double>(problem.masses.size());
+  set_thread_count(0);
 }
 
 void triad(benchmark::State& state, int threads) {
@@ -162,42 +234,41 @@ void triad(benchmark::State& state, int threads) {
   set_thread_count(0);
 }
 
-void add_cases() {
-  for (const int threads : {1, 2}) {
-    benchmark::RegisterBenchmark(("triad/threads:" + std::to_string(threads)).c_str(),
-                                 [=](benchmark::State& s) { triad(s, threads); })
-        ->UseManualTime()
-        ->Iterations(1);
-  }
-  for (const ProblemSettings& settings : cases) {
-    const std::size_t vertices =
-        static_cast<std::size_t>(settings.extent.x() + 1) *
-        static_cast<std::size_t>((settings.extent.y() + 1) * (settings.extent.z() + 1));
-    const int repeats = vertices < 1000 ? 200 : vertices < 30000 ? 8 : vertices < 300000 ? 3 : 2;
-    const bool large_steps = settings.dt > 0.01;
-    const auto add = [&](const std::string& name, int iterations, auto run) {
-      benchmark::RegisterBenchmark((settings.name + "/" + name).c_str(), run)
-          ->UseManualTime()
-          ->Iterations(iterations)
-          ->Unit(benchmark::kMillisecond);
-    };
-    for (const double tolerance : {30.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4}) {
+template <class Run>
+void add(const std::string& name, const Run& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)
+      ->UseManualTime()
+      ->Iterations(1)
+      ->Unit(benchmark::kMillisecond);
+}
+
+void add_benchmarks() {
+  using benchmark::State;
+  for (const int threads : {1, 2})
+    add("triad/threads:" + std::to_string(threads), [=](State& s) { triad(s, threads); });
+  for (const char* name : {"flag_100x60", "flag_400x240", "flag_1000x600", "cube_40"})
+    add(std::string(name) + "/parts", [settings = case_named(name)](State& s) { parts(s, settings); });
+  for (const ProblemSettings& settings : cases()) {
+    // Long steps have several minima and are compared by residual alone.
+    const bool lengthy = settings.dt > 0.01;
+    const std::vector<std::string> all = {"100", "10", "1", "1e-1", "1e-2", "1e-3", "1e-4"};
+    for (const std::string& tolerance : lengthy ? std::vector<std::string>{"1", "1e-3"} : all) {
       for (const int threads : {1, 2}) {
-        add("muslin/threads:" + std::to_string(threads) + "/tolerance:" + std::to_string(tolerance), repeats,
-            [=](benchmark::State& s) { muslin_step(s, settings, tolerance, threads); });
-      }
-      // The textbook method needs seconds here, and at large steps minutes.
-      if (vertices < 500000 && !large_steps && tolerance >= 1e-3) {
-        add("textbook/threads:1/tolerance:" + std::to_string(tolerance), vertices < 1000 ? 50 : 1,
-            [=](benchmark::State& s) { textbook_step(s, settings, tolerance); });
+        add(settings.name + "/muslin/threads:" + std::to_string(threads) + "/tolerance:" + tolerance,
+            [=](State& s) { muslin_step(s, settings, std::stod(tolerance), threads); });
       }
     }
+    // As books have it, every linear system solved to 1e-6; and with the quickest forcing term.
+    const double limit = lengthy ? 15 : 40;  // [s]
+    add(settings.name + "/textbook_inexact", [=](State& s) { textbook_step(s, settings, 0.1, limit); });
+    if (!lengthy)
+      add(settings.name + "/textbook", [=](State& s) { textbook_step(s, settings, 1e-6, limit); });
     if (settings.name == "flag_10x6" || settings.name == "flag_100x60" || settings.name == "flag_400x240") {
       for (const int threads : {1, 2}) {
-        add("muslin_linear/threads:" + std::to_string(threads), repeats,
-            [=](benchmark::State& s) { muslin_linear(s, settings, threads); });
+        add(settings.name + "/muslin_linear/threads:" + std::to_string(threads),
+            [=](State& s) { muslin_linear(s, settings, threads); });
       }
-      add("textbook_linear/threads:1", repeats, [=](benchmark::State& s) { textbook_linear(s, settings); });
+      add(settings.name + "/textbook_linear", [=](State& s) { textbook_linear(s, settings); });
     }
   }
 }
@@ -207,7 +278,7 @@ void add_cases() {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  muslin::bench::add_cases();
+  muslin::bench::add_benchmarks();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
 }

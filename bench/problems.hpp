@@ -33,17 +33,34 @@ struct Problem {
   TextbookProblem textbook() const;
   /// Largest k dt² / m of an edge inside the body.
   double stiffness_number() const;
+  /// Share of the edges that are shorter than at rest: what buckles.
+  double compressed_share() const;
 };
 
+enum class Start {
+  rest,  ///< hanging from two corners of the top
+  /// Likewise, but every vertex flies towards the middle of the top at 10 /s times its distance: faster than
+  /// waves of compression run, so that the body folds in many places.
+  flung,
+};
+
+/// How the state before the measured step is reached: from rest, flung, or from that of another case (`from`;
+/// interpolated if that is coarser), by `steps` steps of `dt`.
 struct ProblemSettings {
   std::string name;
   Vec3i extent;
   double width = 1;  ///< [m]
   double dt = 1.0 / 240;
-  bool crumpled = false;  ///< a smooth random perturbation of the rest shape, at rest
-  int steps = 20;         ///< taken before the measured one, hanging from two corners of the top
+  Start start = Start::rest;
+  int steps = 20;
+  std::string from = {};
 };
 
+/// All cases, in the order in which they are measured.
+const std::vector<ProblemSettings>& cases();
+const ProblemSettings& case_named(const std::string& name);
+
+/// States are kept in MUSLIN_BENCH_STATES from one run of the program to the next.
 Problem make_problem(const ProblemSettings& settings);
 
 }  // namespace muslin::bench

@@ -108,7 +108,8 @@ void TextbookSolver::multiply(ConstVectors p, Vectors y) const {
   }
 }
 
-int TextbookSolver::conjugate_gradients(ConstVectors rhs, double forcing, Vectors solution) {
+int TextbookSolver::conjugate_gradients(ConstVectors rhs, double forcing, const GiveUp& give_up,
+                                        Vectors solution) {
   const std::size_t count = rhs.size();
   std::fill(solution.begin(), solution.end(), Vec3::Zero());
   std::copy(rhs.begin(), rhs.end(), r_.begin());
@@ -116,7 +117,7 @@ int TextbookSolver::conjugate_gradients(ConstVectors rhs, double forcing, Vector
   const double goal = forcing * forcing * dot(rhs, rhs);
   double rz = dot(r_, z_);
   int iterations = 0;
-  while (dot(r_, r_) > goal && iterations < 20000) {
+  while (dot(r_, r_) > goal && iterations < 20000 && !give_up()) {
     multiply(p_, q_);
     const double curvature = dot(p_, q_);
     if (curvature <= 0) break;
@@ -135,28 +136,46 @@ int TextbookSolver::conjugate_gradients(ConstVectors rhs, double forcing, Vector
   return iterations;
 }
 
-TextbookReport TextbookSolver::implicit_euler(double tolerance, double forcing, std::vector<Vec3>& x,
-                                              std::vector<Vec3>& v) {
+std::vector<Vec3> TextbookSolver::inertial_prediction(ConstVectors x, ConstVectors v) const {
+  std::vector<Vec3> predicted(x.size());
+  const double dt = problem_.dt;
+  for (std::size_t i = 0; i < x.size(); ++i) predicted[i] = x[i] + dt * v[i] + dt * dt * problem_.gravity;
+  return predicted;
+}
+
+double TextbookSolver::residual(ConstVectors g) const {
+  double largest = 0;
+  for (std::size_t i = 0; i < g.size(); ++i)
+    largest = std::max(largest, g[i].norm() / (problem_.masses[i] * problem_.dt * problem_.dt));
+  return largest;
+}
+
+TextbookMeasure TextbookSolver::measure(ConstVectors x, ConstVectors v, ConstVectors result) const {
+  const std::vector<Vec3> predicted = inertial_prediction(x, v);
+  std::vector<Vec3> g(x.size());
+  gradient(result, predicted, g);
+  return {energy(result, predicted), residual(g)};
+}
+
+TextbookReport TextbookSolver::implicit_euler(double forcing, const Watch& watch, const GiveUp& give_up,
+                                              std::vector<Vec3>& x, std::vector<Vec3>& v) {
   const std::size_t count = x.size();
   const double dt = problem_.dt;
-  std::vector<Vec3> predicted(count), now(x), g(count), direction(count), trial(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    predicted[i] = x[i] + dt * v[i] + dt * dt * problem_.gravity;
+  const std::vector<Vec3> predicted = inertial_prediction(x, v);
+  std::vector<Vec3> now(x), g(count), direction(count), trial(count);
+  for (std::size_t i = 0; i < count; ++i)
     if (!problem_.fixed[i]) now[i] = predicted[i];
-  }
   TextbookReport report;
-  for (; report.newton_iterations < 1000; ++report.newton_iterations) {
+  for (; report.newton_iterations < 1000 && !give_up(); ++report.newton_iterations) {
     gradient(now, predicted, g);
-    report.residual = 0;
-    for (std::size_t i = 0; i < count; ++i)
-      report.residual = std::max(report.residual, g[i].norm() / (problem_.masses[i] * dt * dt));
-    if (report.residual <= tolerance) {
+    report.residual = residual(g);
+    if (watch(now, report)) {
       report.converged = true;
       break;
     }
     assemble(now, true);
     for (Vec3& value : g) value = -value;
-    report.linear_iterations += conjugate_gradients(g, forcing, direction);
+    report.linear_iterations += conjugate_gradients(g, forcing, give_up, direction);
     const double slope = -dot(g, direction);
     const double start = energy(now, predicted);
     double step = 1;
@@ -176,20 +195,20 @@ TextbookReport TextbookSolver::implicit_euler(double tolerance, double forcing, 
 TextbookReport TextbookSolver::linearly_implicit_euler(double forcing, std::vector<Vec3>& x,
                                                        std::vector<Vec3>& v) {
   const std::size_t count = x.size();
-  const double dt = problem_.dt;
   // The Newton step from x_n on E: the gradient there is −M (dt v + dt² a_gravity) + dt² ∂W/∂x.
-  std::vector<Vec3> predicted(count), g(count), direction(count);
-  for (std::size_t i = 0; i < count; ++i) predicted[i] = x[i] + dt * v[i] + dt * dt * problem_.gravity;
+  const std::vector<Vec3> predicted = inertial_prediction(x, v);
+  std::vector<Vec3> g(count), direction(count);
   gradient(x, predicted, g);
   assemble(x, false);
   for (Vec3& value : g) value = -value;
   TextbookReport report;
   report.newton_iterations = 1;
-  report.linear_iterations = conjugate_gradients(g, forcing, direction);
+  report.linear_iterations = conjugate_gradients(
+      g, forcing, [] { return false; }, direction);
   report.converged = true;
   for (std::size_t i = 0; i < count; ++i) {
     x[i] += direction[i];
-    v[i] = direction[i] / dt;
+    v[i] = direction[i] / problem_.dt;
   }
   return report;
 }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
@@ -34,16 +35,31 @@ struct TextbookReport {
   bool converged = false;
 };
 
+/// What a start of a step makes of a position: for comparing the results of any two methods.
+struct TextbookMeasure {
+  double energy = 0;    ///< E(x), the gravity's constant left out [J s²]
+  double residual = 0;  ///< as in TextbookReport
+};
+
 class TextbookSolver {
  public:
   explicit TextbookSolver(TextbookProblem problem);
 
-  /// One implicit Euler step from (x, v), solved until the residual is at most `tolerance` [m/s²]; each
-  /// linear system to the relative residual `forcing`. Positions and velocities are updated.
-  TextbookReport implicit_euler(double tolerance, double forcing, std::vector<Vec3>& x, std::vector<Vec3>& v);
+  /// Called with every iterate and its report before it is improved on; true ends the step.
+  using Watch = std::function<bool(ConstVectors x, const TextbookReport& report)>;
+  /// Asked once per conjugate gradient iteration; true gives up.
+  using GiveUp = std::function<bool()>;
+
+  /// One implicit Euler step from (x, v) until `watch` or `give_up` ends it; each linear system to the
+  /// relative residual `forcing`. Positions and velocities are updated. Converged if `watch` ended it.
+  TextbookReport implicit_euler(double forcing, const Watch& watch, const GiveUp& give_up,
+                                std::vector<Vec3>& x, std::vector<Vec3>& v);
 
   /// One linearly implicit step on the exact tangent, the linear system to relative residual `forcing`.
   TextbookReport linearly_implicit_euler(double forcing, std::vector<Vec3>& x, std::vector<Vec3>& v);
+
+  /// Of `result` as the end of a step that began with (x, v).
+  TextbookMeasure measure(ConstVectors x, ConstVectors v, ConstVectors result) const;
 
   /// Bytes of matrix, preconditioner and vectors.
   std::size_t bytes() const;
@@ -53,7 +69,9 @@ class TextbookSolver {
   void gradient(ConstVectors x, ConstVectors predicted, Vectors g) const;
   void assemble(ConstVectors x, bool projected);
   void multiply(ConstVectors p, Vectors y) const;
-  int conjugate_gradients(ConstVectors rhs, double forcing, Vectors solution);
+  std::vector<Vec3> inertial_prediction(ConstVectors x, ConstVectors v) const;
+  double residual(ConstVectors g) const;
+  int conjugate_gradients(ConstVectors rhs, double forcing, const GiveUp& give_up, Vectors solution);
 
   TextbookProblem problem_;
   // Block rows: row v has blocks row_[v] … row_[v+1]−1 with columns column_.

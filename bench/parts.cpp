@@ -1,0 +1,54 @@
+#include "parts.hpp"
+
+#include "clock.hpp"
+
+#include "muslin/solver/incremental_potential.hpp"
+#include "muslin/solver/inner_solver.hpp"
+
+namespace muslin::bench {
+namespace {
+
+/// Bytes a vertex and iteration of conjugate gradients on a lattice larger than the caches. A Hessian product
+/// reads p and writes q (28, float) and reads 8 a coupling; chains along x with the update of x and r 68;
+/// lines along z 64 and along y 68; the update of p 60.
+double counted_bytes(const Problem& problem) {
+  const double couplings =
+      static_cast<double>(problem.springs->count()) / static_cast<double>(problem.masses.size());
+  return 28 + 8 * couplings + 68 + 64 + 68 + 60;
+}
+
+}  // namespace
+
+std::map<std::string, double> parts_of_a_step(const Problem& problem) {
+  const std::size_t count = problem.masses.size();
+  const StepProblem step = problem.step_problem();
+  const StepContext context = step_context(Integrator::implicit_euler, problem.state, problem.dt);
+  const IncrementalPotential function(step, context.inertial_prediction, problem.dt);
+  const std::vector<Vec3>& x = problem.state.positions;
+  std::vector<Vec3> g(count), s(count);
+  InnerSolver inner;
+  double norm = 0;
+
+  std::map<std::string, double> parts;
+  const auto per_vertex = [&](const Least& time, double calls = 1) {
+    return 1e9 * time.seconds / (static_cast<double>(count) * calls);
+  };
+  volatile double energy = 0;
+  parts["energy_ns"] = per_vertex(Least::of([&] { energy = function.value(x).value; }));
+  parts["gradient_ns"] = per_vertex(Least::of([&] { function.gradient(x, g); }));
+  parts["linearise_ns"] = per_vertex(Least::of([&] { inner.linearize(function, x); }));
+  // A long solve less a short one, so that what happens once per solve drops out.
+  LinearSettings linear;
+  linear.tolerance = 0;
+  linear.negative_curvature = NegativeCurvature::pass;
+  const auto solve = [&](int iterations) {
+    linear.max_iterations = iterations;
+    return Least::of([&] { inner.solve(g, linear, s, norm); });
+  };
+  constexpr int few = 4, many = 24;
+  parts["iteration_ns"] = per_vertex(solve(many), many - few) - per_vertex(solve(few), many - few);
+  parts["iteration_bytes"] = counted_bytes(problem);
+  return parts;
+}
+
+}  // namespace muslin::bench
