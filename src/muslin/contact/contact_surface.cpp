@@ -1,0 +1,69 @@
+#include "muslin/contact/contact_surface.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+
+ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
+                               std::vector<ContactBody> bodies)
+    : triangles_(std::move(triangles)),
+      triangle_edges_(triangles_.size(), Vec3i::Constant(-1)),
+      ownership_(triangles_.size()),
+      body_of_point_(std::move(body_of_point)),
+      point_shares_(body_of_point_.size(), 0),
+      bodies_(std::move(bodies)) {
+  const auto points = static_cast<int>(body_of_point_.size());
+  for (const int body : body_of_point_) {
+    if (body < 0 || static_cast<std::size_t>(body) >= bodies_.size())
+      throw Error(ErrorKind::usage, "a contact point has a body that does not exist", "check body_of_point");
+  }
+  for (const ContactBody& body : bodies_) {
+    if (!(body.radius >= 0)) throw Error(ErrorKind::usage, "a contact radius is negative", "give 0 or more");
+  }
+  struct Corner {
+    Edge edge;
+    int triangle, side;
+  };
+  std::vector<Corner> sides;
+  sides.reserve(3 * triangles_.size());
+  std::vector<std::uint8_t> owned(body_of_point_.size(), 0);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const Vec3i& corners = triangles_[t];
+    if (corners.minCoeff() < 0 || corners.maxCoeff() >= points)
+      throw Error(ErrorKind::usage, "a contact triangle has a point that does not exist",
+                  "check the indices");
+    if (body_of(corners[0]) != body_of(corners[1]) || body_of(corners[0]) != body_of(corners[2]))
+      throw Error(ErrorKind::usage, "a contact triangle joins two bodies", "give each body its own points");
+    for (int i = 0; i < 3; ++i) {
+      const int p = corners[i], q = corners[(i + 1) % 3];
+      if (p != q) sides.push_back({{std::min(p, q), std::max(p, q)}, static_cast<int>(t), i});
+      if ((i > 0 && p == corners[0]) || (i == 2 && p == corners[1])) continue;
+      ++point_shares_[static_cast<std::size_t>(p)];
+      std::uint8_t& taken = owned[static_cast<std::size_t>(p)];
+      if (taken == 0) ownership_[t].vertices = static_cast<std::uint8_t>(ownership_[t].vertices | 1U << i);
+      taken = 1;
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Corner& a, const Corner& b) {
+    return std::tie(a.edge, a.triangle, a.side) < std::tie(b.edge, b.triangle, b.side);
+  });
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Corner& side = sides[i];
+    const auto t = static_cast<std::size_t>(side.triangle);
+    const bool is_new = i == 0 || side.edge != sides[i - 1].edge;
+    if (is_new) {
+      edges_.push_back(side.edge);
+      edge_shares_.push_back(0);
+      ownership_[t].edges = static_cast<std::uint8_t>(ownership_[t].edges | 1U << side.side);
+    }
+    // The two sides of a segment (a, b, b) are one edge of one triangle.
+    if (is_new || side.triangle != sides[i - 1].triangle) ++edge_shares_.back();
+    triangle_edges_[t][side.side] = static_cast<int>(edges_.size()) - 1;
+  }
+}
+
+}  // namespace muslin

@@ -1,0 +1,67 @@
+// The surfaces of all bodies and colliders as contact sees them: triangles, their edges and vertices, each
+// feature owned by one triangle, so that a pair of features is found once.
+//
+// A triangle with repeated indices is codimensional: (a, b, b) is a segment, such as the axis of a capsule,
+// (a, a, a) a point, such as the centre of a sphere; their body's radius makes them round.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+struct ContactBody {
+  double radius = 0;         ///< half the thickness, or the radius of a sphere or capsule [m]
+  bool self_contact = true;  ///< whether it touches itself
+  bool fixed = false;        ///< a collider: two fixed bodies do not touch each other
+};
+
+/// Immutable.
+class ContactSurface {
+ public:
+  using Edge = std::array<int, 2>;
+
+  /// A triangle's corners and what it owns; the vertices and edges of a triangle are numbered 0, 1, 2, edge i
+  /// from corner i to corner i + 1 mod 3.
+  struct Ownership {
+    std::uint8_t vertices = 0, edges = 0;  ///< bit i: owns corner or edge i
+  };
+
+  /// Points are numbered 0 … body_of_point.size() − 1. A body's triangles use points of that body only.
+  /// Errors: usage, if an index is out of range, a triangle joins two bodies or a radius is negative.
+  ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
+                 std::vector<ContactBody> bodies);
+
+  std::size_t point_count() const { return body_of_point_.size(); }
+  std::span<const Vec3i> triangles() const { return triangles_; }
+  std::span<const Edge> edges() const { return edges_; }
+  std::span<const ContactBody> bodies() const { return bodies_; }
+  /// #T by 3; −1 where a codimensional triangle has no edge.
+  std::span<const Vec3i> triangle_edges() const { return triangle_edges_; }
+  std::span<const Ownership> ownership() const { return ownership_; }
+
+  int body_of(int point) const { return body_of_point_[static_cast<std::size_t>(point)]; }
+  double radius_of(int point) const { return bodies_[static_cast<std::size_t>(body_of(point))].radius; }
+  bool may_touch(int body_a, int body_b) const {
+    const ContactBody &a = bodies_[static_cast<std::size_t>(body_a)],
+                      &b = bodies_[static_cast<std::size_t>(body_b)];
+    return body_a == body_b ? a.self_contact && !a.fixed : !(a.fixed && b.fixed);
+  }
+  /// How many triangles share a point or an edge.
+  int triangles_at_point(int p) const { return point_shares_[static_cast<std::size_t>(p)]; }
+  int triangles_at_edge(int e) const { return edge_shares_[static_cast<std::size_t>(e)]; }
+
+ private:
+  std::vector<Vec3i> triangles_, triangle_edges_;
+  std::vector<Edge> edges_;
+  std::vector<Ownership> ownership_;
+  std::vector<int> body_of_point_, point_shares_, edge_shares_;
+  std::vector<ContactBody> bodies_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,42 @@
+// Boxes in float for the broad phase: four lanes each, compared in one go.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace muslin {
+
+/// Four floats as one value; GCC and clang make one register of it.
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+using Long2 = std::int64_t __attribute__((vector_size(16)));
+
+struct alignas(32) FloatBox {
+  Float4 low{INFINITY, INFINITY, INFINITY, 0};  ///< the last lane is not used
+  Float4 high{-INFINITY, -INFINITY, -INFINITY, 0};
+
+  void extend(const FloatBox& b) {
+    low = b.low < low ? b.low : low;
+    high = b.high > high ? b.high : high;
+  }
+};
+
+inline bool overlap(const FloatBox& a, const FloatBox& b) {
+  const Int4 apart = (a.low > b.high) | (b.low > a.high);
+  const auto halves = std::bit_cast<Long2>(apart);
+  return (halves[0] | halves[1]) == 0;
+}
+
+/// The floats just below or equal, and just above or equal: at most two steps away.
+inline float rounded_down(double value) {
+  const auto f = static_cast<float>(value);
+  return f - (std::fabs(f) * std::numeric_limits<float>::epsilon() + std::numeric_limits<float>::min());
+}
+inline float rounded_up(double value) {
+  const auto f = static_cast<float>(value);
+  return f + (std::fabs(f) * std::numeric_limits<float>::epsilon() + std::numeric_limits<float>::min());
+}
+
+}  // namespace muslin

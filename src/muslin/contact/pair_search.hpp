@@ -1,0 +1,56 @@
+// The broad phase: which features of a contact surface may come close while its points move within boxes.
+//
+// One binary tree over the triangles, built once; its shape stays, its boxes are fitted anew to each motion
+// (van den Bergen 1997). Leaves hold eight triangles, whose boxes are compared in vector code. Boxes are in
+// float, rounded outwards. Pairs of leaves come from descending the tree against itself; features come from
+// pairs of triangles by ownership (Curtis, Tamstorf, Manocha, Fast Collision Detection for Deformable Models
+// using Representative-Triangles, 2008), so that each pair of features comes once.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "muslin/contact/contact_surface.hpp"
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+struct VertexTriangle {
+  int point = 0, triangle = 0;
+  friend auto operator<=>(const VertexTriangle&, const VertexTriangle&) = default;
+};
+struct EdgeEdge {
+  int first = 0, second = 0;
+  friend auto operator<=>(const EdgeEdge&, const EdgeEdge&) = default;
+};
+
+/// Pairs that share no point, of bodies that may touch, each once.
+struct FeaturePairs {
+  std::vector<VertexTriangle> vertex_triangle;
+  std::vector<EdgeEdge> edge_edge;
+};
+
+/// Not safe to use from several threads at once; parallel inside. The order of the pairs is the same for any
+/// thread count.
+class PairSearch {
+ public:
+  /// The tree is fitted to `positions` (#P by 3, [m]), best those at rest, where neighbours on the surface
+  /// are neighbours in space.
+  PairSearch(std::shared_ptr<const ContactSurface> surface, ConstVectors positions);
+  ~PairSearch();
+  PairSearch(PairSearch&&) noexcept;
+  PairSearch& operator=(PairSearch&&) noexcept;
+
+  /// All pairs that can come within radius + radius + `reach` [m] of each other while every point stays in
+  /// its box lower … upper (#P by 3, [m]); and some more, for boxes are not the features. `found` is
+  /// overwritten; its memory is used again.
+  void find(ConstVectors lower, ConstVectors upper, double reach, FeaturePairs& found);
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace muslin

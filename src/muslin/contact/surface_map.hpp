@@ -1,0 +1,57 @@
+// Points of surfaces as linear maps of the degrees of freedom, x = J q: the vertices of a shell (J = 1), the
+// skin of a lattice (trilinear weights), points of an affine body (weights of its four control points), the
+// centre of a ball, a collider's vertices that are moved along keyframes. Contact is written for x and comes
+// back to q by Jᵀ.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// J, sparse, by rows; immutable. Each point is an affine combination of vertices: weights sum to 1, so that
+/// a translation of all vertices is one of all points.
+class SurfaceMap {
+ public:
+  struct Entry {
+    int vertex = 0;     ///< of q
+    double weight = 1;  ///< of that vertex in the point
+  };
+
+  /// Points are the vertices.
+  static SurfaceMap identity(std::size_t vertex_count);
+  /// The entries of point p are entries[offsets[p]] … entries[offsets[p + 1] − 1], offsets #P + 1, each
+  /// vertex once in a row. Errors: usage, if the offsets do not ascend, a vertex does not exist or the
+  /// weights of a point do not sum to 1 (to 1e-9).
+  SurfaceMap(std::size_t vertex_count, std::vector<int> offsets, std::vector<Entry> entries);
+
+  std::size_t vertex_count() const { return vertex_count_; }
+  std::size_t point_count() const { return offsets_.size() - 1; }
+  bool is_identity() const { return identity_; }
+  /// Whether no weight is negative: points lie between their vertices.
+  bool is_convex() const { return convex_; }
+  std::span<const Entry> row(std::size_t point) const { return slice(entries_, offsets_, point); }
+  /// The points that vertex v moves, as (point, weight).
+  std::span<const Entry> column(std::size_t v) const { return slice(columns_, column_offsets_, v); }
+
+  /// x = J q: q #V by 3, x #P by 3.
+  void apply(ConstVectors q, Vectors x) const;
+  /// g += Jᵀ f: f #P by 3, g #V by 3.
+  void add_transpose(ConstVectors f, Vectors g) const;
+
+ private:
+  static std::span<const Entry> slice(const std::vector<Entry>& all, const std::vector<int>& offsets,
+                                      std::size_t i) {
+    return {all.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
+  }
+
+  std::size_t vertex_count_ = 0;
+  bool identity_ = false, convex_ = true;
+  std::vector<int> offsets_, column_offsets_;
+  std::vector<Entry> entries_, columns_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,195 @@
+// The broad phase against trying every pair of features.
+#include "muslin/contact/pair_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "support/cloth_grid.hpp"
+#include <gtest/gtest.h>
+
+#include "muslin/contact/distance.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/core/parallel.hpp"
+
+namespace muslin {
+namespace {
+
+/// Crumpled cloth, a segment and two lone points, each a body.
+struct Scene {
+  std::vector<Vec3> positions;
+  std::shared_ptr<const ContactSurface> surface;
+
+  explicit Scene(bool self_contact = true, double crumple = 0.1) {
+    const test::ClothGrid cloth(11, 12, 0.1);
+    positions = cloth.positions;
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> noise(-crumple, crumple);
+    for (Vec3& p : positions) p += Vec3(noise(random), noise(random), noise(random));
+    std::vector<Vec3i> triangles = cloth.triangles;
+    std::vector<int> bodies(positions.size(), 0);
+    const int n = static_cast<int>(positions.size());
+    for (const Vec3& p : {Vec3(0.1, 0.1, 0.1), Vec3(0.8, 0.2, 0.9), Vec3(0.5, 0.3, 0.5), Vec3(0.5, 0.7, 0.6)})
+      positions.push_back(p);
+    triangles.emplace_back(n, n + 1, n + 1);
+    triangles.emplace_back(n + 2, n + 2, n + 2);
+    triangles.emplace_back(n + 3, n + 3, n + 3);
+    for (const int body : {1, 1, 2, 3}) bodies.push_back(body);
+    surface = std::make_shared<ContactSurface>(
+        triangles, bodies,
+        std::vector<ContactBody>{
+            {0, self_contact, false}, {0.05, true, true}, {0.2, true, true}, {0.25, true, false}});
+  }
+
+  std::array<Vec3, 4> points(const VertexTriangle& pair) const {
+    const Vec3i& t = surface->triangles()[static_cast<std::size_t>(pair.triangle)];
+    return {at(pair.point), at(t[0]), at(t[1]), at(t[2])};
+  }
+  std::array<Vec3, 4> points(const EdgeEdge& pair) const {
+    const auto& e = surface->edges()[static_cast<std::size_t>(pair.first)];
+    const auto& f = surface->edges()[static_cast<std::size_t>(pair.second)];
+    return {at(e[0]), at(e[1]), at(f[0]), at(f[1])};
+  }
+  const Vec3& at(int p) const { return positions[static_cast<std::size_t>(p)]; }
+};
+
+template <class Pair>
+bool contains_once(const std::vector<Pair>& sorted, const Pair& pair) {
+  const auto [begin, end] = std::equal_range(sorted.begin(), sorted.end(), pair);
+  return end - begin == 1;
+}
+
+FeaturePairs sorted_pairs(const Scene& scene, ConstVectors lower, ConstVectors upper, double reach) {
+  PairSearch search(scene.surface, scene.positions);
+  FeaturePairs found;
+  search.find(lower, upper, reach, found);
+  std::sort(found.vertex_triangle.begin(), found.vertex_triangle.end());
+  std::sort(found.edge_edge.begin(), found.edge_edge.end());
+  return found;
+}
+
+TEST(PairSearch, FindsEveryPairWithinReachOnce) {
+  const Scene scene;
+  const ContactSurface& surface = *scene.surface;
+  const double reach = 0.06;
+  const FeaturePairs found = sorted_pairs(scene, scene.positions, scene.positions, reach);
+  EXPECT_EQ(std::adjacent_find(found.vertex_triangle.begin(), found.vertex_triangle.end()),
+            found.vertex_triangle.end());
+  EXPECT_EQ(std::adjacent_find(found.edge_edge.begin(), found.edge_edge.end()), found.edge_edge.end());
+  int close = 0;
+  for (int p = 0; p < static_cast<int>(surface.point_count()); ++p) {
+    for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t) {
+      const Vec3i& c = surface.triangles()[static_cast<std::size_t>(t)];
+      if ((c.array() == p).any() || !surface.may_touch(surface.body_of(p), surface.body_of(c[0]))) continue;
+      if (c[0] == c[2] && surface.body_of(p) < 2) continue;  // the lone point's own pair says it
+      const VertexTriangle pair = {p, t};
+      const double gap = closest_points(PairKind::vertex_triangle, scene.points(pair)).distance() -
+                         surface.radius_of(p) - surface.radius_of(c[0]);
+      if (gap > reach) continue;
+      ++close;
+      EXPECT_TRUE(contains_once(found.vertex_triangle, pair)) << p << " " << t;
+    }
+  }
+  for (int e = 0; e < static_cast<int>(surface.edges().size()); ++e) {
+    for (int f = e + 1; f < static_cast<int>(surface.edges().size()); ++f) {
+      const auto &a = surface.edges()[static_cast<std::size_t>(e)],
+                 &b = surface.edges()[static_cast<std::size_t>(f)];
+      if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) continue;
+      const double gap = closest_points(PairKind::edge_edge, scene.points(EdgeEdge{e, f})).distance() -
+                         surface.radius_of(a[0]) - surface.radius_of(b[0]);
+      if (gap > reach) continue;
+      ++close;
+      EXPECT_TRUE(contains_once(found.edge_edge, {e, f})) << e << " " << f;
+    }
+  }
+  EXPECT_GT(close, 400);
+  for (const VertexTriangle& pair : found.vertex_triangle) {
+    const Vec3i& c = surface.triangles()[static_cast<std::size_t>(pair.triangle)];
+    EXPECT_FALSE((c.array() == pair.point).any());
+    EXPECT_TRUE(surface.may_touch(surface.body_of(pair.point), surface.body_of(c[0])));
+  }
+}
+
+TEST(PairSearch, CoversMotion) {
+  // Boxes from before to after: whatever is close at any time between is found.
+  const Scene scene;
+  std::vector<Vec3> after = scene.positions, lower, upper;
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> noise(-0.2, 0.2);
+  for (std::size_t p = 0; p < after.size(); ++p) {
+    after[p] += Vec3(noise(random), noise(random), noise(random));
+    lower.push_back(after[p].cwiseMin(scene.positions[p]));
+    upper.push_back(after[p].cwiseMax(scene.positions[p]));
+  }
+  const double reach = 0.01;
+  const FeaturePairs swept = sorted_pairs(scene, lower, upper, reach);
+  Scene between = scene;
+  for (const double t : {0.0, 0.3, 0.7, 1.0}) {
+    for (std::size_t p = 0; p < after.size(); ++p)
+      between.positions[p] = (1 - t) * scene.positions[p] + t * after[p];
+    const FeaturePairs now = sorted_pairs(between, between.positions, between.positions, reach);
+    for (const VertexTriangle& pair : now.vertex_triangle) {
+      if (closest_points(PairKind::vertex_triangle, between.points(pair)).distance() > reach) continue;
+      EXPECT_TRUE(contains_once(swept.vertex_triangle, pair));
+    }
+    for (const EdgeEdge& pair : now.edge_edge) {
+      if (closest_points(PairKind::edge_edge, between.points(pair)).distance() > reach) continue;
+      EXPECT_TRUE(contains_once(swept.edge_edge, pair));
+    }
+  }
+}
+
+TEST(PairSearch, LeavesOutSelfContactWhenToldTo) {
+  const Scene scene(false);
+  const FeaturePairs found = sorted_pairs(scene, scene.positions, scene.positions, 0.03);
+  EXPECT_FALSE(found.vertex_triangle.empty());
+  for (const VertexTriangle& pair : found.vertex_triangle) {
+    const int other = scene.surface->triangles()[static_cast<std::size_t>(pair.triangle)][0];
+    EXPECT_NE(scene.surface->body_of(pair.point), scene.surface->body_of(other));
+  }
+}
+
+TEST(PairSearch, FindsLittleInFlatCloth) {
+  const Scene flat(true, 0);
+  const FeaturePairs found = sorted_pairs(flat, flat.positions, flat.positions, 0.002);
+  EXPECT_LT(found.edge_edge.size(), 8 * flat.surface->edges().size());
+}
+
+TEST(PairSearch, KeepsItsOrderForAnyThreadCount) {
+  const Scene scene;
+  PairSearch search(scene.surface, scene.positions);
+  FeaturePairs many, one;
+  search.find(scene.positions, scene.positions, 0.05, many);
+  set_thread_count(1);
+  search.find(scene.positions, scene.positions, 0.05, one);
+  set_thread_count(0);
+  EXPECT_EQ(many.vertex_triangle, one.vertex_triangle);
+  EXPECT_EQ(many.edge_edge, one.edge_edge);
+}
+
+TEST(ContactSurface, OwnsEachFeatureOnce) {
+  const Scene scene;
+  std::vector<int> points(scene.surface->point_count()), edges(scene.surface->edges().size());
+  for (std::size_t t = 0; t < scene.surface->triangles().size(); ++t) {
+    const auto own = scene.surface->ownership()[t];
+    for (int i = 0; i < 3; ++i) {
+      if ((own.vertices >> i & 1) != 0) ++points[static_cast<std::size_t>(scene.surface->triangles()[t][i])];
+      if ((own.edges >> i & 1) != 0) ++edges[static_cast<std::size_t>(scene.surface->triangle_edges()[t][i])];
+    }
+  }
+  EXPECT_EQ(std::count(points.begin(), points.end(), 1), static_cast<std::ptrdiff_t>(points.size()));
+  EXPECT_EQ(std::count(edges.begin(), edges.end(), 1), static_cast<std::ptrdiff_t>(edges.size()));
+  // 11 × 12 grid: 10·12 + 11·11 + 10·11 edges, and the segment.
+  EXPECT_EQ(edges.size(), 120U + 121U + 110U + 1U);
+  EXPECT_EQ(scene.surface->triangles_at_edge(static_cast<int>(edges.size()) - 1), 1);
+}
+
+TEST(ContactSurface, RefusesNonsense) {
+  EXPECT_THROW(ContactSurface({{0, 1, 3}}, {0, 0, 0}, {{}}), Error);
+  EXPECT_THROW(ContactSurface({{0, 1, 2}}, {0, 0, 1}, {{}, {}}), Error);
+  EXPECT_THROW(ContactSurface({{0, 1, 2}}, {0, 0, 1}, {{}}), Error);
+  EXPECT_THROW(ContactSurface({{0, 1, 2}}, {0, 0, 0}, {{-1, true, false}}), Error);
+}
+
+}  // namespace
+}  // namespace muslin
