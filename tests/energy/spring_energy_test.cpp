@@ -3,11 +3,14 @@
 #include "muslin/energy/spring_energy.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
 #include "support/lattice_box.hpp"
 #include "support/potential_battery.hpp"
 #include <gtest/gtest.h>
+
+#include "muslin/energy/spring_damping.hpp"
 
 namespace muslin {
 namespace {
@@ -39,32 +42,118 @@ TEST(SpringEnergy, PassesTheBatteryStretchedAndCompressed) {
   }
 }
 
-TEST(SpringEnergy, SlabsGiveTheSameForcesAsOneVertexAtATime) {
-  // 61·41·2 vertices make several slabs, with springs between them.
-  const Lattice lattice = test::box_lattice({60, 40, 1});
-  const Springs springs = build_springs(lattice, Bracing::kuhn);
-  const SpringEnergy energy(springs, 1, flag_moduli);
-  const std::vector<Vec3> x = crumpled(test::rest_positions(lattice), 0.3);
-  std::vector<Vec3> expected(x.size(), Vec3::Zero());
-  double value = 0;
-  for (const SpringRun& run : springs.runs) {
-    const SpringDirection& direction = springs.directions[static_cast<std::size_t>(run.direction)];
-    const double k = flag_moduli[static_cast<std::size_t>(direction.kind)];
-    const double r = direction.offset.cast<double>().norm();
-    for (int i = 0; i < run.length; ++i) {
-      const auto a = static_cast<std::size_t>(run.a + i);
-      const auto b = static_cast<std::size_t>(run.b + i);
-      const Vec3 z = x[b] - x[a];
-      value += 0.5 * k * std::pow(z.norm() - r, 2);
-      expected[b] += k * (z.norm() - r) * z.normalized();
-      expected[a] -= k * (z.norm() - r) * z.normalized();
+/// Lattices of several slabs with springs between them: one of long rows, whose edges along x overlap, and
+/// one of rows short enough to be joined across the gaps between springs.
+class SpringSlabsTest : public testing::TestWithParam<Vec3i> {
+ protected:
+  const Lattice lattice_ = test::box_lattice(GetParam());
+  const std::vector<Vec3> rest_ = test::rest_positions(lattice_);
+  const Springs springs_ = build_springs(lattice_, Bracing::kuhn);
+
+  /// Calls body(a, b, k, r) for one spring at a time.
+  template <class Body>
+  void for_each_spring(const Body& body) const {
+    for (const SpringRun& run : springs_.runs) {
+      const SpringDirection& direction = springs_.directions[static_cast<std::size_t>(run.direction)];
+      for (int i = 0; i < run.length; ++i) {
+        body(static_cast<std::size_t>(run.a + i), static_cast<std::size_t>(run.b + i),
+             flag_moduli[static_cast<std::size_t>(direction.kind)], direction.offset.cast<double>().norm());
+      }
     }
   }
-  const std::vector<Vec3> g = test::gradient(energy, x);
-  for (std::size_t v = 0; v < x.size(); ++v) ASSERT_LE((g[v] - expected[v]).norm(), 1e-8);
+};
+
+TEST_P(SpringSlabsTest, SpringsPullAsOneSpringAtATime) {
+  const SpringEnergy energy(springs_, 1, flag_moduli);
+  const std::vector<Vec3> x = crumpled(rest_, 0.3), p = test::random_vectors(x.size(), 1, 8);
+  std::vector<Vec3> force(x.size(), Vec3::Zero()), product = force;
+  double value = 0;
+  for_each_spring([&](std::size_t a, std::size_t b, double k, double r) {
+    const Vec3 z = x[b] - x[a], n = z.normalized();
+    value += 0.5 * k * std::pow(z.norm() - r, 2);
+    const Vec3 f = k * (z.norm() - r) * n;
+    force[b] += f, force[a] -= f;
+    const double along = n.dot(p[b] - p[a]);
+    const Vec3 change = k * along * n + k * (1 - r / z.norm()) * (p[b] - p[a] - along * n);
+    product[b] += change, product[a] -= change;
+  });
   EXPECT_NEAR(energy.value(x), value, 1e-12 * value);
+  const std::vector<Vec3> g = test::gradient(energy, x), y = test::hessian_product(energy, x, p);
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    ASSERT_LE((g[v] - force[v]).norm(), 1e-8);
+    ASSERT_LE((y[v] - product[v]).norm(), 1e-8);
+  }
+  test::expect_one_pass_is_two(energy, x);
   test::expect_same_bits_for_any_thread_count(energy, x);
 }
+
+TEST_P(SpringSlabsTest, DashpotsPullAsOneDashpotAtATime) {
+  const double beta = 0.02, dt = 0.1;
+  const auto energy = std::make_shared<SpringEnergy>(springs_, 1, flag_moduli);
+  StepContext step;
+  step.time_end = step.dt = dt;
+  step.anchor = crumpled(rest_, 0.1);
+  step.positions = rest_;
+  const std::vector<Vec3> velocities(rest_.size(), Vec3::Zero());
+  step.velocities = velocities;
+  const auto damping = SpringDamping(energy, beta).potential(step);
+  const std::vector<Vec3> x = crumpled(rest_, 0.3);
+  std::vector<Vec3> force(x.size(), Vec3::Zero());
+  double value = 0;
+  for_each_spring([&](std::size_t a, std::size_t b, double k, double) {
+    const Vec3 n = (rest_[b] - rest_[a]).normalized();
+    const double change = n.dot(x[b] - x[a] - step.anchor[b] + step.anchor[a]);
+    value += 0.5 * beta * k / dt * change * change;
+    force[b] += beta * k / dt * change * n, force[a] -= beta * k / dt * change * n;
+  });
+  EXPECT_NEAR(damping->value(x), value, 1e-12 * value);
+  const std::vector<Vec3> g = test::gradient(*damping, x);
+  for (std::size_t v = 0; v < x.size(); ++v) ASSERT_LE((g[v] - force[v]).norm(), 1e-9);
+  test::expect_one_pass_is_two(*damping, x);
+  test::expect_same_bits_for_any_thread_count(*damping, x);
+}
+
+TEST_P(SpringSlabsTest, LinearizedSpringsAndDashpotsHaveTheirHessian) {
+  const auto energy = std::make_shared<SpringEnergy>(springs_, 1, flag_moduli);
+  const std::vector<Vec3> x = crumpled(rest_, 0.1), velocities(rest_.size(), Vec3::Zero());
+  StepContext step;
+  step.time_end = step.dt = 0.1;
+  step.anchor = x;
+  step.positions = x;  // dashpots along the springs themselves
+  step.velocities = velocities;
+  const auto damping = SpringDamping(energy, 0.02).potential(step);
+  const std::vector<double> masses(x.size(), 1.0);
+  const std::vector<std::uint8_t> fixed(x.size(), 0);
+  const double scale = 0.01;
+  Linearization linearization;
+  linearization.reset(masses, fixed, scale);
+  energy->linearize(x, linearization, 0);
+  damping->linearize(x, linearization, 0);
+  linearization.finish();
+
+  const std::vector<Vec3> p = test::random_vectors(x.size(), 1, 9);
+  FloatVectors p_float, y_float;
+  p_float.resize(x.size());
+  y_float.resize(x.size());
+  const Floats from = p_float.data(), to = y_float.data();
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    from.x[v] = static_cast<float>(p[v].x());
+    from.y[v] = static_cast<float>(p[v].y());
+    from.z[v] = static_cast<float>(p[v].z());
+  }
+  linearization.product(p_float, y_float);
+  std::vector<Vec3> y(x.size(), Vec3::Zero());
+  energy->add_hessian_product(x, p, y);
+  damping->add_hessian_product(x, p, y);
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    const Vec3 expected = p[v] + scale * y[v];
+    // Couplings across the springs are stored with 8 bits.
+    ASSERT_LE((Vec3(to.x[v], to.y[v], to.z[v]) - expected).norm(), 3e-3 * scale * flag_moduli[0]) << v;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Boxes, SpringSlabsTest,
+                         testing::Values(Vec3i(60, 40, 1), Vec3i(12, 30, 9), Vec3i(700, 4, 1)));
 
 TEST(SpringEnergy, ACollapsedSpringStoresItsEnergyAndGivesNoNan) {
   const Lattice lattice = test::box_lattice({1, 1, 1});

@@ -177,6 +177,13 @@ inline void expect_adds(const Potential& potential, ConstVectors x) {
   }
 }
 
+/// One pass gives the bits of two.
+inline void expect_one_pass_is_two(const Potential& potential, ConstVectors x) {
+  std::vector<Vec3> g(x.size(), Vec3::Zero());
+  EXPECT_EQ(potential.add_gradient_and_value(x, g), potential.value(x));
+  EXPECT_EQ(g, gradient(potential, x));
+}
+
 /// Same bits on one thread and on several.
 inline void expect_same_bits_for_any_thread_count(const Potential& potential, ConstVectors x) {
   const std::vector<Vec3> p = random_vectors(x.size(), 1, 41);
@@ -202,6 +209,7 @@ inline void expect_potential_is_sound(const Potential& potential, ConstVectors x
   expect_hessian_symmetric(potential, x);
   expect_diagonal_blocks_positive_semidefinite(potential, x);
   expect_adds(potential, x);
+  expect_one_pass_is_two(potential, x);
   expect_same_bits_for_any_thread_count(potential, x);
 }
 

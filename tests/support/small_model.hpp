@@ -7,6 +7,7 @@
 
 #include "support/lattice_box.hpp"
 
+#include "muslin/energy/spring_damping.hpp"
 #include "muslin/energy/spring_energy.hpp"
 #include "muslin/lattice/embedding.hpp"
 #include "muslin/potential/mass_damping.hpp"

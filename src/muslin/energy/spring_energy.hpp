@@ -16,6 +16,7 @@
 #include <memory>
 #include <vector>
 
+#include "muslin/energy/spring_kernels.hpp"
 #include "muslin/energy/spring_slabs.hpp"
 #include "muslin/lattice/springs.hpp"
 #include "muslin/potential/coupling_pattern.hpp"
@@ -32,12 +33,13 @@ class SpringEnergy : public Potential {
 
   double value(ConstVectors x) const override;
   void add_gradient(ConstVectors x, Vectors g) const override;
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override;
   void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override;
 
   void linearize(ConstVectors x, Linearization& into, std::size_t first) const override;
 
-  /// Largest |z| / r over all springs, 1 if there are none.
+  /// Largest |z| / r over all springs of weight above 0, 1 if there are no springs.
   double max_stretch(ConstVectors x) const;
 
   const SpringSlabs& slabs() const { return slabs_; }
@@ -47,16 +49,16 @@ class SpringEnergy : public Potential {
     const double k = types_[static_cast<std::size_t>(direction)].stiffness;
     return weights_.empty() ? k : k * static_cast<double>(weights_[static_cast<std::size_t>(index)]);
   }
-  /// modulus × width, without weights [N/m].
-  double stiffness_of_kind(int direction) const {
-    return types_[static_cast<std::size_t>(direction)].stiffness;
+  /// Rest length and `factor` k of consecutive springs of a direction, the first of them in this slot.
+  SpringType type(int direction, std::int64_t slot, double factor = 1) const {
+    const Type& type = types_[static_cast<std::size_t>(direction)];
+    return {factor * type.stiffness, type.rest,
+            slot_weights_.empty() ? nullptr : slot_weights_.data() + slot};
   }
   std::int64_t count() const { return count_; }
 
-  /// The springs as the inner solver walks them; kinds are directions.
+  /// The springs as the inner solver walks them; kinds are directions. A slot without a spring has weight 0.
   const std::shared_ptr<const CouplingPattern>& pattern() const { return pattern_; }
-  /// Weights by slot of the pattern, 0 where a slot has no spring; empty if all are 1.
-  const std::vector<float>& slot_weights() const { return slot_weights_; }
 
  private:
   struct Type {
@@ -65,25 +67,10 @@ class SpringEnergy : public Potential {
   };
   std::vector<Type> types_;  // by direction
   std::vector<float> weights_;
-  SpringSlabs slabs_;
   std::int64_t count_ = 0;
   std::shared_ptr<const CouplingPattern> pattern_;
   std::vector<float> slot_weights_;
-};
-
-/// Axial dashpots beside the springs, c = β k: the force on b is −c n nᵀ(v_b − v_a). n is the spring's
-/// direction predicted for the time the step's velocity belongs to (StepContext::velocity_time), so that
-/// falling freely is not damped at all, turning as a rigid body only by the prediction's error, and the
-/// dashpots are quadratic in x:  W = Σ β k (nᵀ(z − z_anchor))² / (2 dt).
-class SpringDamping : public Load {
- public:
-  /// beta [s] ≥ 0: Rayleigh's stiffness-proportional damping.
-  SpringDamping(std::shared_ptr<const SpringEnergy> springs, double beta);
-  std::unique_ptr<Potential> potential(const StepContext& step) const override;
-
- private:
-  std::shared_ptr<const SpringEnergy> springs_;
-  double beta_;
+  SpringSlabs slabs_;
 };
 
 }  // namespace muslin

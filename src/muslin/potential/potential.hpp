@@ -27,6 +27,12 @@ class Potential {
   /// g += ∂W/∂x, #V by 3, N.
   virtual void add_gradient(ConstVectors x, Vectors g) const = 0;
 
+  /// Both in one pass, for potentials that can: the bits of add_gradient and value.
+  virtual double add_gradient_and_value(ConstVectors x, Vectors g) const {
+    add_gradient(x, g);
+    return value(x);
+  }
+
   /// y += ∂²W/∂x² p, the true (possibly indefinite) Hessian at x.
   virtual void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const = 0;
 

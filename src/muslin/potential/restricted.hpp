@@ -17,6 +17,9 @@ class RestrictedPotential : public Potential {
 
   double value(ConstVectors x) const override { return local_->value(part(x)); }
   void add_gradient(ConstVectors x, Vectors g) const override { local_->add_gradient(part(x), part(g)); }
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override {
+    return local_->add_gradient_and_value(part(x), part(g));
+  }
   void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override {
     local_->add_hessian_product(part(x), part(p), part(y));
   }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "muslin/energy/spring_damping.hpp"
 #include "muslin/energy/spring_energy.hpp"
 #include "muslin/energy/volume_energy.hpp"
 #include "muslin/potential/mass_damping.hpp"

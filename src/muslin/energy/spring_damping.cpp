@@ -1,0 +1,102 @@
+#include "muslin/energy/spring_damping.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "muslin/core/parallel.hpp"
+#include "muslin/potential/linearization.hpp"
+
+namespace muslin {
+namespace {
+
+/// W = Σ ½ c (nᵀ(z − z_anchor))², n of the predicted positions; c = β k / dt.
+class Dashpots : public Potential {
+  SpringType type(const SpringPiece& piece) const {
+    return springs_->type(piece.direction, piece.slot, factor_);
+  }
+  /// Columns of the prediction and of x − anchor.
+  auto load_change(ConstVectors x) const {
+    return [this, x](std::size_t v, int n, const std::array<Columns, 2>& to) {
+      load_columns(predicted_[v].data(), n, to[0]);
+      load_differences(x[v].data(), anchor_[v].data(), n, to[1]);
+    };
+  }
+  template <class Load>
+  double sweep(const Load& load, Vectors y) const {
+    return springs_->slabs().sweep<2>(y, load, [&](const SpringPiece& piece, const SpringColumns<2>& c) {
+      add_dashpot_forces(type(piece), piece.length, c.a[0], c.b[0], c.a[1], c.b[1], c.to, c.w);
+    });
+  }
+
+ public:
+  Dashpots(std::shared_ptr<const SpringEnergy> springs, double factor, std::vector<Vec3> anchor,
+           std::vector<Vec3> predicted)
+      : springs_(std::move(springs)),
+        factor_(factor),
+        anchor_(std::move(anchor)),
+        predicted_(std::move(predicted)) {}
+
+  double value(ConstVectors x) const override {
+    return springs_->slabs().sweep<2>(
+        {}, load_change(x), [&](const SpringPiece& piece, const SpringColumns<2>& c) {
+          add_dashpot_energies(type(piece), piece.length, c.a[0], c.b[0], c.a[1], c.b[1], c.w);
+        });
+  }
+  void add_gradient(ConstVectors x, Vectors g) const override { add_gradient_and_value(x, g); }
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override { return sweep(load_change(x), g); }
+  void add_hessian_product(ConstVectors, ConstVectors p, Vectors y) const override {
+    sweep(
+        [this, p](std::size_t v, int n, const std::array<Columns, 2>& to) {
+          load_columns(predicted_[v].data(), n, to[0]);
+          load_columns(p[v].data(), n, to[1]);
+        },
+        y);
+  }
+  void add_diagonal_blocks(ConstVectors, std::span<Mat3> blocks) const override {
+    springs_->slabs().add_blocks(blocks, [&](const SpringPiece& piece, int i) -> Mat3 {
+      const SpringType of = type(piece);
+      const Vec3 z = difference(predicted_, piece, i);
+      const double length = z.norm();
+      if (!(length > shortest_spring * of.rest)) return Mat3::Zero();
+      const Vec3 n = z / length;
+      return ((of.weight != nullptr ? of.k * static_cast<double>(of.weight[i]) : of.k) * n) * n.transpose();
+    });
+  }
+  /// The springs' couplings grow along their own direction. It differs from that of the prediction by as
+  /// much as they turn within the step; Newton's method and iterative refinement make up for it.
+  void linearize(ConstVectors, Linearization& into, std::size_t first) const override {
+    Couplings& couplings = into.couplings(springs_->pattern(), first);
+    for_each_coupling(
+        *springs_->pattern(), predicted_, [&](const CouplingPiece& piece, Columns a, Columns b) {
+          alignas(64) float sx[most_springs], sy[most_springs], sz[most_springs], t[most_springs];
+          couplings.load(piece, sx, sy, sz, t);
+          add_dashpot_couplings(springs_->type(piece.kind, piece.slot, into.scale() * factor_), piece.length,
+                                a, b, sx, sy, sz);
+          couplings.store(piece, sx, sy, sz, t);
+        });
+  }
+
+ private:
+  std::shared_ptr<const SpringEnergy> springs_;
+  double factor_;
+  std::vector<Vec3> anchor_;
+  std::vector<Vec3> predicted_;
+};
+
+}  // namespace
+
+SpringDamping::SpringDamping(std::shared_ptr<const SpringEnergy> springs, double beta)
+    : springs_(std::move(springs)), beta_(beta) {}
+
+std::unique_ptr<Potential> SpringDamping::potential(const StepContext& step) const {
+  if (beta_ == 0) return nullptr;
+  constexpr std::size_t grain = 8192;
+  std::vector<Vec3> predicted(step.positions.size());
+  const double ahead = step.velocity_time - step.time_begin;
+  parallel_for(predicted.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) predicted[v] = step.positions[v] + ahead * step.velocities[v];
+  });
+  return std::make_unique<Dashpots>(springs_, beta_ / step.dt, step.anchor, std::move(predicted));
+}
+
+}  // namespace muslin

@@ -1,0 +1,72 @@
+// The loops over consecutive springs, as vector code on columns.
+#pragma once
+
+#include <cstddef>
+
+namespace muslin {
+
+/// #n by 3 numbers as three arrays.
+struct Columns {
+  double* x = nullptr;
+  double* y = nullptr;
+  double* z = nullptr;
+
+  Columns operator+(std::ptrdiff_t i) const { return {x + i, y + i, z + i}; }
+};
+
+/// Springs of one type: k [N/m] times a weight by spring, rest length [m].
+struct SpringType {
+  double k = 0;
+  double rest = 0;
+  const float* weight = nullptr;  ///< null: all 1
+};
+
+/// A spring shorter than this times its rest length has no direction.
+inline constexpr double shortest_spring = 1e-12;
+
+/// Forces are computed for so many springs at most.
+inline constexpr int most_springs = 1024;
+
+/// How far apart columns of n entries lie [entries], and memory of this thread for columns: valid until the
+/// next call on it.
+std::size_t column_stride(int n);
+double* column_memory(std::size_t entries);
+
+/// Columns of n vectors stored x y z x y z ….
+void load_columns(const double* vectors, int n, Columns to);
+/// Columns of p − q.
+void load_differences(const double* p, const double* q, int n, Columns to);
+void clear_columns(Columns c, int n);
+/// vectors += columns
+void add_columns(Columns from, int n, double* vectors);
+double sum_of(const double* w, int n);
+
+/// Where forces of springs between vertices go: subtracted from y_a and added to y_b, where these are not
+/// null. b_after_a is b − a.
+struct SpringTargets {
+  Columns y_a, y_b;
+  int b_after_a = 0;
+};
+
+/// Energies ½ k (|z| − r)², z = b − a.
+void add_spring_energies(const SpringType& type, int n, Columns a, Columns b, double* w);
+/// The same, and the forces k (1 − r/|z|) z.
+void add_spring_forces(const SpringType& type, int n, Columns a, Columns b, const SpringTargets& to,
+                       double* w);
+/// ∂²W/∂z² d, d = p_b − p_a.
+void add_spring_products(const SpringType& type, int n, Columns a, Columns b, Columns p_a, Columns p_b,
+                         const SpringTargets& to);
+/// Energies ½ k (n·d)² and forces k (n·d) n, n = z/|z| and d = p_b − p_a.
+void add_dashpot_forces(const SpringType& type, int n, Columns a, Columns b, Columns p_a, Columns p_b,
+                        const SpringTargets& to, double* w);
+void add_dashpot_energies(const SpringType& type, int n, Columns a, Columns b, Columns p_a, Columns p_b,
+                          double* w);
+
+/// ∂²W/∂z² = s sᵀ + t I: s = √(k r/|z|) n and t = k (1 − r/|z|); s = 0 and t = k without a direction.
+void spring_couplings(const SpringType& type, int n, Columns a, Columns b, float* sx, float* sy, float* sz,
+                      float* t);
+/// s sᵀ += k n nᵀ of dashpots along n ∥ s: s grows to √(|s|² + k) n. Where s is zero, n is z/|z|.
+void add_dashpot_couplings(const SpringType& type, int n, Columns a, Columns b, float* sx, float* sy,
+                           float* sz);
+
+}  // namespace muslin
