@@ -2,14 +2,71 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
+#include "muslin/core/vector_code.hpp"
 #include "muslin/solver/vector_operations.hpp"
 
 namespace muslin {
 namespace {
 
-void set_zero(Vectors y) { std::fill(y.begin(), y.end(), Vec3::Zero()); }
+constexpr int chunk = 256;  // vertices whose terms are kept in the first-level cache
+
+/// w = ½ m |x − x̃|²
+MUSLIN_VECTOR_CODE void inertia(const double* __restrict x, const double* __restrict prediction,
+                                const double* __restrict m, int n, double* __restrict w) {
+  for (int i = 0; i < n; ++i) {
+    const double dx = x[3 * i] - prediction[3 * i], dy = x[3 * i + 1] - prediction[3 * i + 1],
+                 dz = x[3 * i + 2] - prediction[3 * i + 2];
+    w[i] = 0.5 * m[i] * (dx * dx + dy * dy + dz * dz);
+  }
+}
+/// The same, and g = scale g + m (x − x̃), zero on held vertices.
+MUSLIN_VECTOR_CODE void inertia_and_gradient(const double* __restrict x, const double* __restrict prediction,
+                                             const double* __restrict m, const std::uint8_t* __restrict held,
+                                             double scale, int n, double* __restrict g,
+                                             double* __restrict w) {
+  for (int i = 0; i < n; ++i) {
+    const double dx = x[3 * i] - prediction[3 * i], dy = x[3 * i + 1] - prediction[3 * i + 1],
+                 dz = x[3 * i + 2] - prediction[3 * i + 2];
+    w[i] = 0.5 * m[i] * (dx * dx + dy * dy + dz * dz);
+    const double gx = scale * g[3 * i] + m[i] * dx, gy = scale * g[3 * i + 1] + m[i] * dy,
+                 gz = scale * g[3 * i + 2] + m[i] * dz;
+    const bool free = held[i] == 0;
+    g[3 * i] = free ? gx : 0.0;
+    g[3 * i + 1] = free ? gy : 0.0;
+    g[3 * i + 2] = free ? gz : 0.0;
+  }
+}
+/// squares = |g|² and ratios = |g|² / m², zero on held vertices.
+MUSLIN_VECTOR_CODE void squared_accelerations(const double* __restrict g, const double* __restrict m,
+                                              const std::uint8_t* __restrict held, int n,
+                                              double* __restrict squares, double* __restrict ratios) {
+  for (int i = 0; i < n; ++i) {
+    const double square = g[3 * i] * g[3 * i] + g[3 * i + 1] * g[3 * i + 1] + g[3 * i + 2] * g[3 * i + 2];
+    squares[i] = held[i] == 0 ? square : 0.0;
+    ratios[i] = squares[i] / (m[i] * m[i]);
+  }
+}
+/// Summed in lanes: by many additions that do not wait for one another.
+MUSLIN_VECTOR_CODE double sum_of(const double* w, int n) {
+  constexpr int lanes = 8;
+  double sum[lanes] = {};
+  int i = 0;
+  for (; i + lanes <= n; i += lanes)
+    for (int l = 0; l < lanes; ++l) sum[l] += w[i + l];
+  for (; i < n; ++i) sum[0] += w[i];
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
+/// Calls body(first, n) for chunks of [begin, end).
+template <class Body>
+void for_each_chunk(std::size_t begin, std::size_t end, const Body& body) {
+  for (std::size_t v = begin; v < end; v += chunk)
+    body(v, static_cast<int>(std::min<std::size_t>(chunk, end - v)));
+}
 
 }  // namespace
 
@@ -17,31 +74,49 @@ IncrementalPotential::IncrementalPotential(const StepProblem& problem, ConstVect
     : problem_(problem), prediction_(prediction), dt_(dt) {}
 
 IncrementalPotential::Value IncrementalPotential::value(ConstVectors x) const {
-  const double inertia = parallel_sum(size(), vector_grain, 0.0, [&](std::size_t begin, std::size_t end) {
+  const double inertial = parallel_sum(size(), vector_grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
-    for (std::size_t v = begin; v < end; ++v) {
-      sum += 0.5 * problem_.masses[v] * (x[v] - prediction_[v]).squaredNorm();
-    }
+    for_each_chunk(begin, end, [&](std::size_t v, int n) {
+      alignas(64) double w[chunk];
+      inertia(x[v].data(), prediction_[v].data(), &problem_.masses[v], n, w);
+      sum += sum_of(w, n);
+    });
     return sum;
   });
-  Value result{inertia, inertia};
-  for (const Potential* potential : problem_.potentials) {
-    const double w = dt_ * dt_ * potential->value(x);
-    result.value += w;
-    result.magnitude += std::abs(w);
-  }
+  Value result{inertial, inertial};
+  for (const Potential* potential : problem_.potentials) result += dt_ * dt_ * potential->value(x);
   return result;
+}
+
+/// g becomes dt² g plus the gradient of the inertial term, whose value is returned.
+double IncrementalPotential::add_inertia(ConstVectors x, Vectors g) const {
+  return parallel_sum(size(), vector_grain, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for_each_chunk(begin, end, [&](std::size_t v, int n) {
+      alignas(64) double w[chunk];
+      inertia_and_gradient(x[v].data(), prediction_[v].data(), &problem_.masses[v], &problem_.fixed[v],
+                           dt_ * dt_, n, g[v].data(), w);
+      sum += sum_of(w, n);
+    });
+    return sum;
+  });
 }
 
 void IncrementalPotential::gradient(ConstVectors x, Vectors g) const {
   set_zero(g);
   for (const Potential* potential : problem_.potentials) potential->add_gradient(x, g);
-  parallel_for(size(), vector_grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      g[v] = held(v) ? Vec3(Vec3::Zero())
-                     : Vec3(dt_ * dt_ * g[v] + problem_.masses[v] * (x[v] - prediction_[v]));
-    }
-  });
+  add_inertia(x, g);
+}
+
+IncrementalPotential::Value IncrementalPotential::value_and_gradient(ConstVectors x, Vectors g) const {
+  set_zero(g);
+  std::vector<double> terms;
+  for (const Potential* potential : problem_.potentials)
+    terms.push_back(dt_ * dt_ * potential->add_gradient_and_value(x, g));
+  const double inertial = add_inertia(x, g);
+  Value result{inertial, inertial};
+  for (const double term : terms) result += term;
+  return result;
 }
 
 void IncrementalPotential::hessian_product(ConstVectors x, ConstVectors p, Vectors y) const {
@@ -82,21 +157,48 @@ double IncrementalPotential::max_step(ConstVectors x, ConstVectors d) const {
 }
 
 IncrementalPotential::Imbalance IncrementalPotential::imbalance(ConstVectors g) const {
-  Imbalance worst;
-  for (std::size_t v = 0; v < size(); ++v) {
-    if (held(v)) continue;
-    const double acceleration = g[v].norm() / (problem_.masses[v] * dt_ * dt_);
+  struct Worst {
+    double ratio = 0;
+    int vertex = -1;
+    double square = 0;
+
     // A NaN must not hide: it compares false with everything.
-    if (!(acceleration <= worst.largest)) worst = {acceleration, static_cast<int>(v)};
-    if (std::isnan(acceleration)) break;
-  }
-  return worst;
+    void consider(double r, int v) {
+      if (!(r <= ratio) && !std::isnan(ratio)) ratio = r, vertex = v;
+    }
+    Worst operator+(const Worst& later) const {
+      Worst worst = *this;
+      worst.consider(later.ratio, later.vertex);
+      worst.square += later.square;
+      return worst;
+    }
+  };
+  const Worst worst = parallel_sum(size(), vector_grain, Worst{}, [&](std::size_t begin, std::size_t end) {
+    Worst of_block;
+    for_each_chunk(begin, end, [&](std::size_t v, int n) {
+      alignas(64) double squares[chunk], ratios[chunk];
+      squared_accelerations(g[v].data(), &problem_.masses[v], &problem_.fixed[v], n, squares, ratios);
+      for (int i = 0; i < n; ++i) of_block.consider(ratios[i], static_cast<int>(v) + i);
+      of_block.square += sum_of(squares, n);
+    });
+    return of_block;
+  });
+  return {std::sqrt(worst.ratio) / (dt_ * dt_), worst.vertex, std::sqrt(worst.square)};
 }
 
 double IncrementalPotential::rounding_floor(ConstVectors x, double stiffest) const {
   constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
-  double farthest = 0;  // largest coordinate [m]
-  for (const Vec3& p : x) farthest = std::max(farthest, p.lpNorm<Eigen::Infinity>());
+  struct Largest {
+    double value = 0;
+    Largest operator+(const Largest& other) const { return {std::max(value, other.value)}; }
+  };
+  const double farthest =  // coordinate [m]
+      parallel_sum(x.size(), vector_grain, Largest{}, [&](std::size_t begin, std::size_t end) {
+        Largest largest;
+        for (std::size_t v = begin; v < end; ++v)
+          largest.value = std::max(largest.value, x[v].lpNorm<Eigen::Infinity>());
+        return largest;
+      }).value;
   // Neighbours' couplings add up to no more than the diagonal block again.
   return 2 * stiffest / (dt_ * dt_) * farthest * half_ulp;
 }

@@ -5,6 +5,7 @@
 // x̃ is the inertial prediction. Held vertices are not unknowns: their rows read zero.
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "muslin/potential/linearization.hpp"
@@ -20,11 +21,19 @@ class IncrementalPotential {
   struct Value {
     double value = 0;
     double magnitude = 0;  ///< sum of the absolute values of the terms: what rounding is relative to
+
+    Value& operator+=(double term) {
+      value += term;
+      magnitude += std::abs(term);
+      return *this;
+    }
   };
   Value value(ConstVectors x) const;
 
   /// g = ∂E/∂x, zero on held vertices.
   void gradient(ConstVectors x, Vectors g) const;
+  /// Both in as few passes as the potentials allow; the same bits.
+  Value value_and_gradient(ConstVectors x, Vectors g) const;
   /// y = ∂²E/∂x² p, zero on held vertices; p may move held vertices.
   void hessian_product(ConstVectors x, ConstVectors p, Vectors y) const;
   /// Positive definite diagonal blocks of (an approximation of) the Hessian; mass alone on held vertices.
@@ -35,8 +44,9 @@ class IncrementalPotential {
   double max_step(ConstVectors x, ConstVectors d) const;
 
   struct Imbalance {
-    double largest = 0;  ///< max ‖gᵢ‖ / (mᵢ dt²) over free vertices [m/s²]
+    double largest = 0;  ///< max ‖gᵢ‖ / (mᵢ dt²) over free vertices [m/s²]; NaN if any is
     int vertex = -1;
+    double norm = 0;  ///< ‖g‖ over free vertices [kg m]
   };
   Imbalance imbalance(ConstVectors g) const;
   /// What of the imbalance rounding can cause: half a unit in the last place of every coordinate, carried
@@ -51,6 +61,8 @@ class IncrementalPotential {
   double dt() const { return dt_; }
 
  private:
+  double add_inertia(ConstVectors x, Vectors g) const;
+
   const StepProblem& problem_;
   ConstVectors prediction_;
   double dt_;

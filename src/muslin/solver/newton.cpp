@@ -19,24 +19,39 @@ constexpr double rounding = 1e-12;   // values closer than this (relative) canno
 constexpr double smallest_step = 1e-10;
 constexpr double loosest_forcing = 0.1;
 
-using Point = NewtonWorkspace::Point;
+struct Point {
+  Vectors x;
+  IncrementalPotential::Value value;
+  IncrementalPotential::Imbalance imbalance;
+};
 
-/// Moves `point` along s, downhill with slope gᵀs < 0; false if no step helps.
-bool line_search(const IncrementalPotential& function, ConstVectors s, double slope, Point& point,
-                 Point& trial) {
-  double t = std::min(1.0, 0.9 * function.max_step(point.x, s));
+/// Moves `point` along s, downhill with slope gᵀs < 0, and g with it; false if no step helps: then `point`
+/// stays and g is undefined. `room` is for positions to try; it becomes the old positions.
+bool line_search(const IncrementalPotential& function, ConstVectors s, double slope, Point& point, Vectors g,
+                 Vectors& room) {
+  const double longest = std::min(1.0, 0.9 * function.max_step(point.x, s));
   const double allowance = rounding * point.value.magnitude;
-  while (t > smallest_step) {
-    combine(point.x, t, s, trial.x);
-    trial.value = function.value(trial.x);
-    const double change = trial.value.value - point.value.value;
+  for (double t = longest; t > smallest_step;) {
+    combine(point.x, t, s, room);
+    // The first step tried is nearly always taken: its gradient is worth computing along with the value.
+    bool have_gradient = t == longest;
+    const IncrementalPotential::Value value =
+        have_gradient ? function.value_and_gradient(room, g) : function.value(room);
+    const double change = value.value - point.value.value;
     bool accepted = change <= armijo * t * slope;
-    const bool have_gradient = accepted || change <= allowance;
-    if (have_gradient) function.gradient(trial.x, trial.g);
-    if (!accepted && have_gradient) accepted = std::abs(dot(trial.g, s)) <= slope_share * std::abs(slope);
-    if (accepted && all_finite(trial.g)) {
-      std::swap(point, trial);
-      return true;
+    if (!have_gradient && (accepted || change <= allowance)) {
+      function.gradient(room, g);
+      have_gradient = true;
+    }
+    if (!accepted && change <= allowance) accepted = std::abs(dot(g, s)) <= slope_share * std::abs(slope);
+    if (accepted) {
+      const IncrementalPotential::Imbalance imbalance = function.imbalance(g);
+      if (std::isfinite(imbalance.norm)) {
+        std::swap(point.x, room);
+        point.value = value;
+        point.imbalance = imbalance;
+        return true;
+      }
     }
     // The minimum of the parabola through value and slope at 0 and the value at t, kept within bounds.
     const double parabola = -0.5 * slope * t * t / (change - t * slope);
@@ -61,24 +76,25 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
 }  // namespace
 
 std::size_t NewtonWorkspace::bytes() const {
-  const std::size_t vectors = point.x.capacity() + point.g.capacity() + trial.x.capacity() +
-                              trial.g.capacity() + s.capacity() + minus_g.capacity();
+  const std::size_t vectors = x.capacity() + g.capacity() + s.capacity();
   return vectors * sizeof(Vec3) + inner.bytes();
 }
 
 StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings, Vectors x,
                     NewtonWorkspace& workspace) {
   const std::size_t count = function.size();
-  auto& [point, trial, s, minus_g, inner] = workspace;
-  point.x.assign(x.begin(), x.end());
-  for (auto* vectors : {&point.g, &trial.x, &trial.g, &s, &minus_g}) vectors->resize(count);
-  point.value = function.value(point.x);
-  function.gradient(point.x, point.g);
+  auto& [other, g, s, inner] = workspace;
+  for (auto* vectors : {&other, &g, &s}) vectors->resize(count);
+  Point point;
+  point.x = x;
+  Vectors room = other;
+  point.value = function.value_and_gradient(x, g);
+  point.imbalance = function.imbalance(g);
 
   StepReport report;
   double forcing = loosest_forcing;
   for (;;) {
-    const IncrementalPotential::Imbalance imbalance = function.imbalance(point.g);
+    const IncrementalPotential::Imbalance imbalance = point.imbalance;
     report.residual = imbalance.largest;
     report.worst_vertex = imbalance.vertex;
     report.converged = imbalance.largest <= settings.tolerance;
@@ -94,25 +110,23 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
       break;
     }
 
-    for (std::size_t v = 0; v < count; ++v) minus_g[v] = -point.g[v];
-    const double g_norm = std::sqrt(dot(point.g, point.g));
     LinearSettings linear;
     linear.tolerance = std::max(forcing, 0.3 * settings.tolerance / imbalance.largest);
     linear.tolerance = std::min(linear.tolerance, loosest_forcing);
-    const LinearReport solved = solve_linear(function, point.x, minus_g, linear, inner, s);
+    const LinearReport solved = solve_linear(function, point.x, g, linear, inner, s);
     ++report.newton_iterations;
     report.linear_iterations += solved.iterations;
 
-    const double slope = dot(point.g, s);
-    if (!(slope < 0) || !line_search(function, s, slope, point, trial)) {
+    const double slope = negate_and_dot(g, s);
+    if (!(slope < 0) || !line_search(function, s, slope, point, g, room)) {
       report.failure = "no step lowers the energy any further";
       break;
     }
     // Eisenstat and Walker's second choice with exponent 2: loose far from the solution, quadratic near it.
-    const double shrink = std::sqrt(dot(point.g, point.g)) / g_norm;
+    const double shrink = point.imbalance.norm / imbalance.norm;
     forcing = std::clamp(0.9 * shrink * shrink, 1e-4, loosest_forcing);
   }
-  std::copy(point.x.begin(), point.x.end(), x.begin());
+  if (point.x.data() != x.data()) std::copy(point.x.begin(), point.x.end(), x.begin());
   return report;
 }
 

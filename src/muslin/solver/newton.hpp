@@ -11,12 +11,8 @@ namespace muslin {
 
 /// Vectors kept from step to step.
 struct NewtonWorkspace {
-  struct Point {
-    std::vector<Vec3> x, g;
-    IncrementalPotential::Value value;
-  };
-  Point point, trial;
-  std::vector<Vec3> s, minus_g;
+  std::vector<Vec3> x;     ///< where the line search starts, or what it tries
+  std::vector<Vec3> g, s;  ///< gradient and step
   InnerSolver inner;
 
   std::size_t bytes() const;

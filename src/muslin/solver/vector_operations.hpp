@@ -1,6 +1,7 @@
 // Sums and updates over #V by 3 vectors; the same bits for any thread count.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -11,10 +12,29 @@ namespace muslin {
 
 inline constexpr std::size_t vector_grain = 4096;
 
+inline void set_zero(Vectors y) {
+  parallel_for(y.size(), vector_grain, [&](std::size_t begin, std::size_t end) {
+    std::fill(y.begin() + static_cast<std::ptrdiff_t>(begin), y.begin() + static_cast<std::ptrdiff_t>(end),
+              Vec3::Zero());
+  });
+}
+
 inline double dot(ConstVectors a, ConstVectors b) {
   return parallel_sum(a.size(), vector_grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t v = begin; v < end; ++v) sum += a[v].dot(b[v]);
+    return sum;
+  });
+}
+
+/// y = −y; returns xᵀy.
+inline double negate_and_dot(ConstVectors x, Vectors y) {
+  return parallel_sum(x.size(), vector_grain, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t v = begin; v < end; ++v) {
+      y[v] = -y[v];
+      sum += x[v].dot(y[v]);
+    }
     return sum;
   });
 }
