@@ -29,8 +29,8 @@ class Clock {
   std::clock_t used_ = std::clock();
 };
 
-/// Runs `body` repeatedly and keeps the least time of each clock: at least twice, unless once takes 15 s, and
-/// for half a second, but not more than 200 times.
+/// Runs `body` repeatedly and keeps the least time of each clock: at least three times, unless that
+/// takes 3 s, and for half a second, but not more than 200 times.
 struct Least {
   double seconds = 1e300, wall = 1e300;
 
@@ -38,7 +38,7 @@ struct Least {
   static Least of(const Body& body) {
     Least least;
     const Clock whole;
-    for (int n = 0; n < 200 && (n < 2 ? whole.wall() < 15 : whole.wall() < 0.5); ++n) {
+    for (int n = 0; n < 200 && whole.wall() < (n < 3 ? 3 : 0.5); ++n) {
       const Clock clock;
       body();
       least.seconds = std::min(least.seconds, clock.seconds());
