@@ -39,26 +39,35 @@ struct Reference {
   double error(ConstVectors x) const { return norm(x, solution) / scale; }
 
   static const Reference& of(const ProblemSettings& settings) {
-    static std::string name;
+    static std::string name, failure;
     static Reference reference;
-    if (name == settings.name) return reference;
-    name.clear();
-    reference = {};
-    reference.problem = make_problem(settings);
-    reference.textbook = std::make_unique<TextbookSolver>(reference.problem.textbook());
-    State state = reference.problem.state;
+    if (name != settings.name) {
+      name = settings.name;
+      reference = {};
+      failure = reference.make(settings);
+    }
+    if (!failure.empty()) throw std::runtime_error(failure);
+    return reference;
+  }
+
+ private:
+  /// What went wrong, empty if nothing.
+  std::string make(const ProblemSettings& settings) try {
+    problem = make_problem(settings);
+    textbook = std::make_unique<TextbookSolver>(problem.textbook());
+    State state = problem.state;
     SolverSettings tight;
     tight.tolerance = 1e-6 * gravity;
     tight.max_iterations = 1000;
-    const StepReport report = solve_step(tight, step_context(tight.integrator, state, settings.dt),
-                                         reference.problem.step_problem(), state);
-    if (!report.converged) throw std::runtime_error(settings.name + ": no reference, " + report.failure);
-    reference.solution = state.positions;
-    reference.scale = norm(reference.solution, reference.problem.state.positions);
-    reference.energy_drop = reference.measure(reference.problem.state.positions).energy -
-                            reference.measure(state.positions).energy;
-    name = settings.name;
-    return reference;
+    const StepContext context = step_context(tight.integrator, state, settings.dt);
+    const StepReport report = solve_step(tight, context, problem.step_problem(), state);
+    if (!report.converged) return "no reference: " + report.failure;
+    solution = state.positions;
+    scale = norm(solution, problem.state.positions);
+    energy_drop = measure(problem.state.positions).energy - measure(solution).energy;
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
   }
 };
 
@@ -107,7 +116,6 @@ void take_steps(benchmark::State& state, const ProblemSettings& settings, const 
         static_cast<double>(stepper.bytes()) / static_cast<double>(problem.masses.size());
     describe(state, reference, after.positions);
   }
-  set_thread_count(0);
 }
 
 void muslin_step(benchmark::State& state, const ProblemSettings& settings, double tolerance, int threads) {
@@ -193,7 +201,6 @@ void textbook_step(benchmark::State& state, const ProblemSettings& settings, dou
         static_cast<double>(reference.textbook->bytes()) / static_cast<double>(start.positions.size());
     describe(state, reference, x);
   }
-  set_thread_count(0);
 }
 
 void textbook_linear(benchmark::State& state, const ProblemSettings& settings) {
@@ -208,7 +215,6 @@ void textbook_linear(benchmark::State& state, const ProblemSettings& settings) {
     describe(state, reference, time);
     state.counters["linear"] = report.linear_iterations;
   }
-  set_thread_count(0);
 }
 
 /// Nanoseconds per vertex and call of what a step is made of, on one thread.
@@ -221,7 +227,6 @@ void parts(benchmark::State& state, const ProblemSettings& settings) {
     state.SetIterationTime(clock.wall());
   }
   state.counters["vertices"] = static_cast<double>(problem.masses.size());
-  set_thread_count(0);
 }
 
 void triad(benchmark::State& state, int threads) {
@@ -231,12 +236,19 @@ void triad(benchmark::State& state, int threads) {
     state.SetIterationTime(24.0 / rate);
     state.counters["bytes_per_second"] = rate;
   }
-  set_thread_count(0);
 }
 
 template <class Run>
 void add(const std::string& name, const Run& run) {
-  benchmark::RegisterBenchmark(name.c_str(), run)
+  const auto reporting = [run](benchmark::State& state) {
+    try {
+      run(state);
+    } catch (const std::exception& error) {
+      state.SkipWithError(error.what());
+    }
+    set_thread_count(0);
+  };
+  benchmark::RegisterBenchmark(name.c_str(), reporting)
       ->UseManualTime()
       ->Iterations(1)
       ->Unit(benchmark::kMillisecond);
