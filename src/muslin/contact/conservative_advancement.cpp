@@ -7,7 +7,8 @@
 
 namespace muslin {
 
-double safe_fraction(PairKind kind, std::span<const Vec3, 4> x, std::span<const Vec3, 4> u, double required) {
+double safe_fraction(PairKind kind, std::span<const Vec3, 4> x, std::span<const Vec3, 4> u, double required,
+                     double tolerance) {
   const int first = first_feature_size(kind);
   double fastest = 0, size = 0;
   for (int i = 0; i < first; ++i) {
@@ -22,14 +23,14 @@ double safe_fraction(PairKind kind, std::span<const Vec3, 4> x, std::span<const 
   const double floor = required + distance_rounding(size);
 
   constexpr int most_steps = 100;
-  double t = 0, first_slack = 0;
+  double t = 0, enough = 0;
   std::array<Vec3, 4> at;
   for (int step = 0; step < most_steps; ++step) {
     for (std::size_t i = 0; i < 4; ++i) at[i] = x[i] + t * u[i];
     const ClosestPoints closest = closest_points(kind, at);
     const double d = closest.distance(), slack = d - floor;
-    if (step == 0) first_slack = slack;
-    if (slack <= 0 || (step > 0 && slack <= 0.1 * first_slack)) return t;
+    if (step == 0) enough = std::min(0.1 * slack, tolerance);
+    if (slack <= 0 || (step > 0 && slack <= enough)) return t;
     double by_norm = fastest > 0 ? slack / fastest : 2, by_plane = std::numeric_limits<double>::infinity();
     const Vec3 n = closest.difference / d;
     for (int i = 0; i < first; ++i) {

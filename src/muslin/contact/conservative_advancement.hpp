@@ -19,9 +19,11 @@
 namespace muslin {
 
 /// The largest t in [0, 1] found such that the features at x + s u (#4 by 3, [m]) keep a distance of at least
-/// `required` [m] for all s in [0, t]. `required` must be less than the distance at s = 0. Stops when nine
-/// tenths of the way from the first distance to `required` are used up, so that t > 0 always.
-double safe_fraction(PairKind kind, std::span<const Vec3, 4> x, std::span<const Vec3, 4> u, double required);
+/// `required` [m] for all s in [0, t]. `required` must be less than the distance at s = 0. If t < 1 the
+/// distance there is at most `tolerance` [m] more than required, or nine tenths of the way to it are used up;
+/// t > 0 always.
+double safe_fraction(PairKind kind, std::span<const Vec3, 4> x, std::span<const Vec3, 4> u, double required,
+                     double tolerance);
 
 /// Rounding in a distance between points of coordinates up to `size` [m].
 constexpr double distance_rounding(double size) { return 4e-15 * size; }

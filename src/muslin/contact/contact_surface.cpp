@@ -1,6 +1,7 @@
 #include "muslin/contact/contact_surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -9,13 +10,14 @@
 namespace muslin {
 
 ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
-                               std::vector<ContactBody> bodies)
+                               std::vector<ContactBody> bodies, std::vector<ContactPlane> planes)
     : triangles_(std::move(triangles)),
       triangle_edges_(triangles_.size(), Vec3i::Constant(-1)),
       ownership_(triangles_.size()),
       body_of_point_(std::move(body_of_point)),
       point_shares_(body_of_point_.size(), 0),
-      bodies_(std::move(bodies)) {
+      bodies_(std::move(bodies)),
+      planes_(std::move(planes)) {
   const auto points = static_cast<int>(body_of_point_.size());
   for (const int body : body_of_point_) {
     if (body < 0 || static_cast<std::size_t>(body) >= bodies_.size())
@@ -23,6 +25,12 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
   }
   for (const ContactBody& body : bodies_) {
     if (!(body.radius >= 0)) throw Error(ErrorKind::usage, "a contact radius is negative", "give 0 or more");
+  }
+  for (const ContactPlane& plane : planes_) {
+    if (plane.point < 0 || plane.point >= points)
+      throw Error(ErrorKind::usage, "a contact plane has a point that does not exist", "check the index");
+    if (!(std::fabs(plane.normal.norm() - 1) <= 1e-9))
+      throw Error(ErrorKind::usage, "the normal of a contact plane is not of length 1", "normalise it");
   }
   struct Corner {
     Edge edge;

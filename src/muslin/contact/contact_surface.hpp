@@ -21,6 +21,13 @@ struct ContactBody {
   bool fixed = false;        ///< a collider: two fixed bodies do not touch each other
 };
 
+/// A half-space that nothing enters: gap = normal·(x − x_point). The plane moves with its point and does not
+/// turn.
+struct ContactPlane {
+  int point = 0;                ///< of the surface, of a body of its own
+  Vec3 normal = Vec3(0, 1, 0);  ///< outward, of length 1
+};
+
 /// Immutable.
 class ContactSurface {
  public:
@@ -33,14 +40,16 @@ class ContactSurface {
   };
 
   /// Points are numbered 0 … body_of_point.size() − 1. A body's triangles use points of that body only.
-  /// Errors: usage, if an index is out of range, a triangle joins two bodies or a radius is negative.
+  /// Errors: usage, if an index is out of range, a triangle joins two bodies, a radius is negative or a
+  /// normal is not of length 1 (to 1e-9).
   ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
-                 std::vector<ContactBody> bodies);
+                 std::vector<ContactBody> bodies, std::vector<ContactPlane> planes = {});
 
   std::size_t point_count() const { return body_of_point_.size(); }
   std::span<const Vec3i> triangles() const { return triangles_; }
   std::span<const Edge> edges() const { return edges_; }
   std::span<const ContactBody> bodies() const { return bodies_; }
+  std::span<const ContactPlane> planes() const { return planes_; }
   /// #T by 3; −1 where a codimensional triangle has no edge.
   std::span<const Vec3i> triangle_edges() const { return triangle_edges_; }
   std::span<const Ownership> ownership() const { return ownership_; }
@@ -62,6 +71,7 @@ class ContactSurface {
   std::vector<Ownership> ownership_;
   std::vector<int> body_of_point_, point_shares_, edge_shares_;
   std::vector<ContactBody> bodies_;
+  std::vector<ContactPlane> planes_;
 };
 
 }  // namespace muslin

@@ -1,6 +1,6 @@
-// Distances between the features of surfaces: a vertex and a triangle, two edges. Triangles may be needles,
-// segments or points, edges may be parallel or points; what comes out is always a pair of points of the two
-// features, never NaN for finite input.
+// Distances between the features of surfaces: a vertex and a triangle, two edges. (A point and a plane need
+// no function.) Triangles may be needles, segments or points, edges may be parallel or points; what comes out
+// is always a pair of points of the two features, never NaN for finite input.
 //
 // Both distances are written as one linear combination of the four points,
 //
@@ -19,10 +19,10 @@
 
 namespace muslin {
 
-enum class PairKind { vertex_triangle, edge_edge };
+enum class PairKind { vertex_triangle, edge_edge, point_plane };
 
-/// How many of the four points belong to the first feature.
-constexpr int first_feature_size(PairKind kind) { return kind == PairKind::vertex_triangle ? 1 : 2; }
+/// How many of the four points belong to the first feature, the others to the second.
+constexpr int first_feature_size(PairKind kind) { return kind == PairKind::edge_edge ? 2 : 1; }
 
 struct ClosestPoints {
   Vec3 difference;                ///< c_A − c_B [m]
@@ -101,7 +101,7 @@ inline ClosestPoints closest_edge_edge(const Vec3& a0, const Vec3& a1, const Vec
   return best;
 }
 
-/// Of a pair of either kind: vertex, triangle or a₀, a₁, b₀, b₁.
+/// Of a pair of the first two kinds: vertex, triangle or a₀, a₁, b₀, b₁.
 inline ClosestPoints closest_points(PairKind kind, std::span<const Vec3, 4> x) {
   return kind == PairKind::vertex_triangle ? closest_vertex_triangle(x[0], x[1], x[2], x[3])
                                            : closest_edge_edge(x[0], x[1], x[2], x[3]);

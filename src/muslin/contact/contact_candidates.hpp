@@ -1,0 +1,82 @@
+// The pairs of features that may touch while all points stay within reach of where they are, kept for several
+// iterations; what contact energy and step limiter walk over.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "muslin/contact/contact_surface.hpp"
+#include "muslin/contact/distance.hpp"
+#include "muslin/contact/pair_search.hpp"
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+struct ContactPair {
+  std::array<int, 4> points{};  ///< vertex, triangle · a₀, a₁, b₀, b₁ · point, plane's point, −1, −1
+  int first = 0, second = 0;  ///< the features: point, triangle · edges · point, plane
+  PairKind kind = PairKind::vertex_triangle;
+  double thickness = 0;  ///< the distance of the two midsurfaces when they touch [m]
+  double range = 0;      ///< the contact distance d̂ of this pair [m]: contact energy acts below this gap
+
+  /// Says which features, for any order of the pairs.
+  std::uint64_t key() const {
+    return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(first) << 31 |
+           static_cast<std::uint64_t>(second);
+  }
+  int point_count() const { return kind == PairKind::point_plane ? 2 : 4; }
+};
+
+/// The distance of a pair's features and its derivative: ∂d/∂xᵢ = weights[i] · normal.
+struct PairGeometry {
+  Vec3 normal = Vec3::Zero();  ///< from the second feature to the first; zero if d = 0
+  double distance = 0;         ///< [m], not of planes: there it has a sign
+  std::array<double, 4> weights{};
+};
+PairGeometry pair_geometry(const ContactSurface& surface, const ContactPair& pair, ConstVectors x);
+
+class ContactCandidates {
+ public:
+  /// `rest` (#P by 3, [m]): features of one body that are as close at rest as contact would keep them are
+  /// given a smaller thickness and range, so that a body at rest is not in contact with itself.
+  /// `contact_distance`: d̂ [m]. Errors: usage, if it is not positive or sizes do not fit.
+  ContactCandidates(std::shared_ptr<const ContactSurface> surface, ConstVectors rest,
+                    double contact_distance);
+
+  /// Finds the pairs that may come within range while every point stays in the box of its positions at
+  /// `begin` and `end` (#P by 3, [m]), widened by `margin` [m] on all sides.
+  void update(ConstVectors begin, ConstVectors end, double margin);
+
+  const ContactSurface& surface() const { return *surface_; }
+  double contact_distance() const { return contact_distance_; }
+  std::span<const ContactPair> pairs() const { return pairs_; }
+  /// The boxes in which the pairs are complete, #P by 3 [m].
+  ConstVectors lower() const { return lower_; }
+  ConstVectors upper() const { return upper_; }
+
+  /// The smallest distance less thickness of all pairs at x, if that is below the contact distance: then it
+  /// is that of the whole surface, for x within the boxes; infinite otherwise [m].
+  double smallest_gap(ConstVectors x) const;
+
+ private:
+  void limit_by_rest(ContactPair& pair) const;
+  void add(PairKind kind, int first, int second, ConstVectors begin, std::vector<ContactPair>& out) const;
+
+  std::shared_ptr<const ContactSurface> surface_;
+  double contact_distance_;
+  PairSearch search_;
+  FeaturePairs found_;
+  std::vector<Vec3> lower_, upper_;
+  std::vector<ContactPair> pairs_;
+  struct RestDistance {
+    std::uint64_t key;
+    double distance;
+  };
+  std::vector<RestDistance> rest_distances_;  // by key, of the close pairs alone
+};
+
+}  // namespace muslin

@@ -1,0 +1,337 @@
+#include "muslin/contact/step_limiter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "muslin/contact/conservative_advancement.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/core/parallel.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr std::size_t grain = 1024;
+/// Points with less weight in the closest points do not make a pair approach.
+constexpr double least_weight = 0.01;
+/// The share of a gap that deflection leaves, and, near the floor, how many floors.
+constexpr double kept_share = 0.2, kept_floors = 1.5;
+/// Rounds of deflection: vertices against triangles, edges against edges, then both.
+constexpr int deflections = 6;
+/// The share of its safe way that a pair is given, so that it keeps some gap for the next step.
+constexpr double given_share = 0.9;
+/// Rounds after which shortening is made stronger, and after which it stops vertices altogether, so that it
+/// ends.
+constexpr std::size_t patient_rounds = 8, last_rounds = 24;
+
+/// direction·u ≤ most for the step u of a vertex.
+struct HalfSpace {
+  int vertex;
+  Vec3 direction;
+  double most;
+};
+
+}  // namespace
+
+struct StepLimiter::Work {
+  const SurfaceMap& map;
+  const StepLimits& limits;
+  const ContactCandidates& candidates;
+  std::span<const ContactPair> pairs;
+  std::vector<Vec3> x, u;              ///< points and their steps
+  std::vector<PairGeometry> geometry;  ///< of the pairs at x
+  std::vector<std::uint8_t> moved;     ///< points whose step has changed since the pairs were last judged
+  std::vector<double> factors;         ///< how much of their step pairs may take, 1 for nearly all
+
+  Work(const SurfaceMap& map_, const StepLimits& limits_, const ContactCandidates& candidates_,
+       ConstVectors q)
+      : map(map_),
+        limits(limits_),
+        candidates(candidates_),
+        pairs(candidates_.pairs()),
+        x(map_.point_count()),
+        u(map_.point_count()),
+        geometry(pairs.size()),
+        moved(map_.point_count(), 1),
+        factors(pairs.size(), 1) {
+    map.apply(q, x);
+    parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        geometry[i] = pair_geometry(candidates.surface(), pairs[i], x);
+    });
+  }
+
+  bool is_prescribed(int point) const {
+    if (limits.prescribed.empty()) return false;
+    for (const SurfaceMap::Entry& e : map.row(static_cast<std::size_t>(point)))
+      if (limits.prescribed[static_cast<std::size_t>(e.vertex)] == 0) return false;
+    return true;
+  }
+
+  const Vec3& position(const ContactPair& pair, int i) const {
+    return x[static_cast<std::size_t>(pair.points[static_cast<std::size_t>(i)])];
+  }
+  const Vec3& step(const ContactPair& pair, int i) const {
+    return u[static_cast<std::size_t>(pair.points[static_cast<std::size_t>(i)])];
+  }
+
+  /// How much of its step a pair may take.
+  double safe_factor(const ContactPair& pair, const PairGeometry& at) const {
+    if (at.distance <= 0) return 1;
+    const double required = std::min(pair.thickness + limits.gap_floor, at.distance * (1 - 1e-6));
+    if (pair.kind == PairKind::point_plane) {
+      const double approach = at.normal.dot(step(pair, 1) - step(pair, 0));
+      return approach <= at.distance - required ? 1 : (at.distance - required) / approach;
+    }
+    // Nothing moves far enough to matter, for nearly all pairs.
+    const double slack = at.distance - required;
+    const int size_a = first_feature_size(pair.kind);
+    double fastest = 0;
+    for (int i = 0; i < size_a; ++i)
+      for (int j = size_a; j < 4; ++j)
+        fastest = std::max(fastest, (step(pair, i) - step(pair, j)).squaredNorm());
+    if (fastest <= 0.999 * slack * slack) return 1;
+    std::array<Vec3, 4> from, by;
+    for (std::size_t i = 0; i < 4; ++i) {
+      from[i] = x[static_cast<std::size_t>(pair.points[i])];
+      by[i] = u[static_cast<std::size_t>(pair.points[i])];
+    }
+    return safe_fraction(pair.kind, from, by, required, limits.gap_floor / 2);
+  }
+
+  PairGeometry geometry_at(const ContactPair& pair, const PairGeometry& start, double time) const {
+    if (pair.kind == PairKind::point_plane) return start;
+    std::array<Vec3, 4> p;
+    for (int i = 0; i < 4; ++i) p[static_cast<std::size_t>(i)] = position(pair, i) + time * step(pair, i);
+    const ClosestPoints c = closest_points(pair.kind, p);
+    return {c.difference / c.distance(), c.distance(), c.weights};
+  }
+
+  /// Half-spaces that keep the points of one side of a pair from moving along `direction` beyond `most`.
+  void restrict(const ContactPair& pair, const PairGeometry& at, int begin, int end, const Vec3& direction,
+                double most, std::vector<HalfSpace>& out) const {
+    for (int i = begin; i < end; ++i) {
+      if (std::fabs(at.weights[static_cast<std::size_t>(i)]) < least_weight) continue;
+      const int point = pair.points[static_cast<std::size_t>(i)];
+      if (direction.dot(u[static_cast<std::size_t>(point)]) <= most) continue;
+      const auto row = map.row(static_cast<std::size_t>(point));
+      const bool convex =
+          map.is_convex() || std::all_of(row.begin(), row.end(), [](const auto& e) { return e.weight >= 0; });
+      if (!convex) continue;
+      for (const SurfaceMap::Entry& e : row)
+        if (e.weight > 0) out.push_back({e.vertex, direction, most});
+    }
+  }
+
+  /// For a pair that comes too close during the step: takes the approach along the normal they then have.
+  void restrict_pair(const ContactPair& pair, const PairGeometry& start, double factor,
+                     std::vector<HalfSpace>& out) const {
+    const PairGeometry at = geometry_at(pair, start, factor);
+    const int size_a = first_feature_size(pair.kind), count = pair.point_count();
+    double approach_a = 0, approach_b = 0, before = 0;
+    for (int i = 0; i < count; ++i) {
+      const double weight = at.weights[static_cast<std::size_t>(i)];
+      (i < size_a ? approach_a : approach_b) -= weight * at.normal.dot(step(pair, i));
+      before += weight * at.normal.dot(position(pair, i));
+    }
+    const double gap = before - pair.thickness;
+    const double kept = std::max(kept_floors * limits.gap_floor, kept_share * gap);
+    const double slack = std::max(0.0, gap - kept);
+    if (approach_a + approach_b <= slack) return;
+    const bool a_yields = !is_prescribed(pair.points[0]);
+    const bool b_yields = !is_prescribed(pair.points[static_cast<std::size_t>(size_a)]);
+    // Each side may use the slack in proportion to its approach; one that recedes leaves its way to the
+    // other, and what moves along keyframes is given way to.
+    double most_a = approach_a, most_b = approach_b;
+    if (!a_yields || (b_yields && approach_a <= 0)) {
+      most_b = slack - approach_a;
+    } else if (!b_yields || approach_b <= 0) {
+      most_a = slack - approach_b;
+    } else {
+      most_a = slack * approach_a / (approach_a + approach_b);
+      most_b = slack - most_a;
+    }
+    if (a_yields && most_a < approach_a) restrict(pair, at, 0, size_a, -at.normal, most_a, out);
+    if (b_yields && most_b < approach_b) restrict(pair, at, size_a, count, at.normal, most_b, out);
+  }
+
+  /// Judges the pairs of points whose step has changed; returns whether any comes too close.
+  bool judge(ConstVectors dq) {
+    map.apply(dq, u);
+    std::vector<std::uint8_t> found((pairs.size() + grain - 1) / grain, 0);
+    parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const ContactPair& pair = pairs[i];
+        bool look = false;
+        for (int k = 0; k < pair.point_count(); ++k)
+          look |= moved[static_cast<std::size_t>(pair.points[static_cast<std::size_t>(k)])] != 0;
+        if (look) factors[i] = safe_factor(pair, geometry[i]);
+        if (factors[i] < 1) found[begin / grain] = 1;
+      }
+    });
+    std::fill(moved.begin(), moved.end(), 0);
+    return std::any_of(found.begin(), found.end(), [](std::uint8_t f) { return f != 0; });
+  }
+
+  void mark(std::size_t vertex) {
+    for (const SurfaceMap::Entry& e : map.column(vertex)) moved[static_cast<std::size_t>(e.vertex)] = 1;
+  }
+
+  /// Takes away the excess normal approach of the pairs that come too close, of those for which chosen(kind);
+  /// notes in `deflected` (#V) which vertices that changes.
+  template <class Chosen>
+  void deflect(Vectors dq, const Chosen& chosen, std::vector<std::uint8_t>& deflected) {
+    std::vector<std::vector<HalfSpace>> parts((pairs.size() + grain - 1) / grain);
+    parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (factors[i] < 1 && chosen(pairs[i].kind))
+          restrict_pair(pairs[i], geometry[i], factors[i], parts[begin / grain]);
+      }
+    });
+    // By vertex, in the order of the pairs.
+    std::vector<int> offsets(dq.size() + 1, 0);
+    for (const auto& part : parts)
+      for (const HalfSpace& h : part) ++offsets[static_cast<std::size_t>(h.vertex) + 1];
+    for (std::size_t v = 0; v < dq.size(); ++v) offsets[v + 1] += offsets[v];
+    std::vector<const HalfSpace*> by_vertex(static_cast<std::size_t>(offsets.back()));
+    std::vector<int> next(offsets.begin(), offsets.end() - 1);
+    for (const auto& part : parts)
+      for (const HalfSpace& h : part)
+        by_vertex[static_cast<std::size_t>(next[static_cast<std::size_t>(h.vertex)]++)] = &h;
+    std::vector<std::uint8_t> changed(dq.size(), 0);
+    parallel_for(dq.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (!limits.prescribed.empty() && limits.prescribed[v] != 0) continue;
+        for (int i = offsets[v]; i < offsets[v + 1]; ++i) {
+          const HalfSpace& h = *by_vertex[static_cast<std::size_t>(i)];
+          const double excess = h.direction.dot(dq[v]) - h.most;
+          if (excess <= 0) continue;
+          dq[v] -= excess * h.direction;
+          changed[v] = 1;
+        }
+      }
+    });
+    for (std::size_t v = 0; v < dq.size(); ++v) {
+      if (changed[v] == 0) continue;
+      deflected[v] = 1;
+      mark(v);
+    }
+  }
+
+  /// The largest factor that keeps a point in its box.
+  double factor_within_box(std::size_t p) const {
+    double factor = 1;
+    for (int k = 0; k < 3; ++k) {
+      const double low = candidates.lower()[p][k] - x[p][k], high = candidates.upper()[p][k] - x[p][k];
+      if (u[p][k] > high) factor = std::min(factor, std::max(0.0, high) / u[p][k]);
+      if (u[p][k] < low) factor = std::min(factor, std::min(0.0, low) / u[p][k]);
+    }
+    return factor;
+  }
+
+  /// Lowers factors of vertices to that of their group.
+  void join_groups(std::vector<double>& by) const {
+    if (limits.groups.empty()) return;
+    std::vector<double> of_group;
+    for (std::size_t v = 0; v < by.size(); ++v) {
+      if (limits.groups[v] < 0) continue;
+      const auto g = static_cast<std::size_t>(limits.groups[v]);
+      if (g >= of_group.size()) of_group.resize(g + 1, 1);
+      of_group[g] = std::min(of_group[g], by[v]);
+    }
+    for (std::size_t v = 0; v < by.size(); ++v)
+      if (limits.groups[v] >= 0) by[v] = of_group[static_cast<std::size_t>(limits.groups[v])];
+  }
+
+  /// Shortens steps by the factors of the vertices (#V); returns how many.
+  std::size_t shorten(const std::vector<double>& by, Vectors dq) {
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < dq.size(); ++v) {
+      if (by[v] >= 1) continue;
+      ++count;
+      dq[v] *= by[v];
+      mark(v);
+    }
+    return count;
+  }
+
+  void lower(std::vector<double>& by, int point, double factor) const {
+    for (const SurfaceMap::Entry& e : map.row(static_cast<std::size_t>(point))) {
+      double& f = by[static_cast<std::size_t>(e.vertex)];
+      f = std::min(f, factor);
+    }
+  }
+
+  std::size_t clip(Vectors dq) {
+    std::vector<double> by(dq.size());
+    std::size_t count = 0;
+    // A shortened vertex of several may move a point out of its box again: until none is out.
+    for (std::size_t round = 0;; ++round) {
+      map.apply(dq, u);
+      std::fill(by.begin(), by.end(), 1.0);
+      bool outside = false;
+      for (std::size_t p = 0; p < map.point_count(); ++p) {
+        const double factor = factor_within_box(p);
+        if (factor >= 1) continue;
+        outside = true;
+        lower(by, static_cast<int>(p), round < last_rounds ? factor * (1 - 1e-9) : 0);
+      }
+      if (!outside) return count;
+      join_groups(by);
+      count = std::max(count, shorten(by, dq));
+    }
+  }
+
+  void advance(Vectors dq, LimitReport& report) {
+    std::vector<double> by(dq.size()), total(dq.size(), 1);
+    while (judge(dq)) {
+      const std::size_t round = report.rounds++;
+      std::fill(by.begin(), by.end(), 1.0);
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (factors[i] >= 1) continue;
+        const double share = round < patient_rounds ? given_share : round < last_rounds ? 0.5 : 0;
+        for (int k = 0; k < pairs[i].point_count(); ++k)
+          lower(by, pairs[i].points[static_cast<std::size_t>(k)], share * factors[i]);
+      }
+      join_groups(by);
+      shorten(by, dq);
+      for (std::size_t v = 0; v < dq.size(); ++v) total[v] *= by[v];
+    }
+    for (const double t : total) {
+      report.shortened += t < 1 ? 1 : 0;
+      report.smallest_factor = std::min(report.smallest_factor, t);
+    }
+  }
+};
+
+StepLimiter::StepLimiter(std::shared_ptr<const SurfaceMap> map, StepLimits limits)
+    : map_(std::move(map)), limits_(std::move(limits)) {
+  if (!(limits_.gap_floor > 0))
+    throw Error(ErrorKind::usage, "the gap floor is not positive", "give a length in metres");
+  const auto fits = [&](std::size_t size) { return size == 0 || size == map_->vertex_count(); };
+  if (!fits(limits_.prescribed.size()) || !fits(limits_.groups.size()))
+    throw Error(ErrorKind::usage, "a step limiter needs one entry for each vertex", "give #V or none");
+}
+
+LimitReport StepLimiter::limit(const ContactCandidates& candidates, ConstVectors q, Vectors dq) const {
+  if (q.size() != map_->vertex_count() || dq.size() != q.size() ||
+      candidates.surface().point_count() != map_->point_count())
+    throw Error(ErrorKind::usage, "a step limiter needs one position for each vertex", "give #V positions");
+  LimitReport report;
+  Work work(*map_, limits_, candidates, q);
+  std::vector<std::uint8_t> deflected(q.size(), 0);
+  // Vertices first: what slides over a sheet would else be held by the edges that it passes.
+  for (int round = 0; round < deflections && work.judge(dq); ++round) {
+    const auto chosen = [round](PairKind kind) {
+      return round > 1 || (kind == PairKind::edge_edge) == (round == 1);
+    };
+    work.deflect(dq, chosen, deflected);
+  }
+  report.deflected = static_cast<std::size_t>(std::count(deflected.begin(), deflected.end(), 1));
+  report.clipped = work.clip(dq);
+  work.advance(dq, report);
+  return report;
+}
+
+}  // namespace muslin

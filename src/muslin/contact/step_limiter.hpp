@@ -1,0 +1,58 @@
+// Takes from a step what would make surfaces touch, locally: the guarantee that nothing ever crosses.
+//
+//  1. A few passes take away only the excess normal approach of each pair; the rest of the motion stays.
+//  2. Vertices whose points would leave the boxes in which the pairs are known are shortened to stay within.
+//  3. Conservative advancement of each pair shortens the step of the vertices of those that still come too
+//     close; again for all pairs that these vertices touch, until there is none.
+//
+// The third part alone gives the guarantee (docs/theory/contact.md), the first makes it rarely needed. Never
+// one step length for all: a tight spot anywhere would freeze everything.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "muslin/contact/contact_candidates.hpp"
+#include "muslin/contact/surface_map.hpp"
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+struct StepLimits {
+  /// The gap that a step leaves every pair that had more [m]. Absolute: a share of the gap at the start would
+  /// let gaps shrink step by step until rounding lets features through.
+  double gap_floor = 1e-5;
+  /// #V, 1 for vertices that move along keyframes: others give way to them. Empty: none.
+  std::vector<std::uint8_t> prescribed;
+  /// #V, vertices of the same number ≥ 0 are shortened together, −1: alone. Empty: all alone. For what must
+  /// keep its shape.
+  std::vector<int> groups;
+};
+
+struct LimitReport {
+  std::size_t deflected = 0;   ///< vertices that lost normal approach
+  std::size_t clipped = 0;     ///< vertices stopped at the boxes: if any, find the candidates anew soon
+  std::size_t shortened = 0;   ///< vertices shortened by conservative advancement
+  std::size_t rounds = 0;      ///< of conservative advancement
+  double smallest_factor = 1;  ///< by which a vertex was shortened
+};
+
+class StepLimiter {
+ public:
+  /// Errors: usage, if sizes do not fit or the floor is not positive.
+  StepLimiter(std::shared_ptr<const SurfaceMap> map, StepLimits limits);
+
+  /// Changes the step `dq` (#V by 3, [m]) from q such that no pair of the candidates comes closer than its
+  /// thickness + gap floor, or, if it is closer than that at q, any closer, all along the straight way to
+  /// q + dq. Points J q must lie in the boxes of the candidates. Pairs at distance zero are left free.
+  LimitReport limit(const ContactCandidates& candidates, ConstVectors q, Vectors dq) const;
+
+ private:
+  struct Work;
+  std::shared_ptr<const SurfaceMap> map_;
+  StepLimits limits_;
+};
+
+}  // namespace muslin
