@@ -258,7 +258,7 @@ void add_benchmarks() {
   using benchmark::State;
   for (const int threads : {1, 2})
     add("triad/threads:" + std::to_string(threads), [=](State& s) { triad(s, threads); });
-  for (const char* name : {"flag_100x60", "flag_400x240", "flag_1000x600", "cube_40"})
+  for (const char* name : {"flag_100x60", "flag_400x240", "falling_1000x600", "cube_40"})
     add(std::string(name) + "/parts", [settings = case_named(name)](State& s) { parts(s, settings); });
   for (const ProblemSettings& settings : cases()) {
     // Long steps have several minima and are compared by residual alone. On two threads only what is needed
