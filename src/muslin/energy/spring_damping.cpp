@@ -1,9 +1,9 @@
 #include "muslin/energy/spring_damping.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "muslin/core/parallel.hpp"
+#include "muslin/potential/float_vectors.hpp"
 #include "muslin/potential/linearization.hpp"
 
 namespace muslin {
@@ -29,12 +29,22 @@ class Dashpots : public Potential {
   }
 
  public:
-  Dashpots(std::shared_ptr<const SpringEnergy> springs, double factor, std::vector<Vec3> anchor,
-           std::vector<Vec3> predicted)
-      : springs_(std::move(springs)),
-        factor_(factor),
-        anchor_(std::move(anchor)),
-        predicted_(std::move(predicted)) {}
+  Dashpots(std::shared_ptr<const SpringEnergy> springs, double factor, const StepContext& step)
+      : springs_(std::move(springs)), factor_(factor) {
+    const std::size_t count = step.positions.size();
+    constexpr std::size_t grain = 8192;
+    anchor_memory_.resize(count);
+    predicted_memory_.resize(count);
+    const double ahead = step.velocity_time - step.time_begin;
+    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        anchor_memory_.data()[v] = step.anchor[v];
+        predicted_memory_.data()[v] = step.positions[v] + ahead * step.velocities[v];
+      }
+    });
+    anchor_ = {anchor_memory_.data(), count};
+    predicted_ = {predicted_memory_.data(), count};
+  }
 
   double value(ConstVectors x) const override {
     return springs_->slabs().sweep<2>(
@@ -79,8 +89,8 @@ class Dashpots : public Potential {
  private:
   std::shared_ptr<const SpringEnergy> springs_;
   double factor_;
-  std::vector<Vec3> anchor_;
-  std::vector<Vec3> predicted_;
+  Buffer<Vec3> anchor_memory_, predicted_memory_;  // made anew every step: few large pages are
+  ConstVectors anchor_, predicted_;                // faster to get than many small ones
 };
 
 }  // namespace
@@ -90,13 +100,7 @@ SpringDamping::SpringDamping(std::shared_ptr<const SpringEnergy> springs, double
 
 std::unique_ptr<Potential> SpringDamping::potential(const StepContext& step) const {
   if (beta_ == 0) return nullptr;
-  constexpr std::size_t grain = 8192;
-  std::vector<Vec3> predicted(step.positions.size());
-  const double ahead = step.velocity_time - step.time_begin;
-  parallel_for(predicted.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) predicted[v] = step.positions[v] + ahead * step.velocities[v];
-  });
-  return std::make_unique<Dashpots>(springs_, beta_ / step.dt, step.anchor, std::move(predicted));
+  return std::make_unique<Dashpots>(springs_, beta_ / step.dt, step);
 }
 
 }  // namespace muslin

@@ -15,10 +15,10 @@ auto load(ConstVectors x) {
   return [x](std::size_t v, int n, const std::array<Columns, 1>& to) { load_columns(x[v].data(), n, to[0]); };
 }
 
-/// Runs of one b − a that are less than this many vertices apart become one: springs that are not there cost
-/// as little as those that are, short loops cost more. Runs along x stay apart: they are the chains that the
-/// preconditioner solves side by side.
-constexpr int shortest_run = 64;
+/// Runs of one b − a that follow one another become one, the shorter ones also across gaps: springs that are
+/// not there cost as little as those that are, ends of loops cost more. Runs along x stay apart: they are the
+/// chains that the preconditioner solves side by side.
+constexpr int shortest_run = 512;
 constexpr int longest_gap = 8;
 
 /// Runs with a < b, by direction and then by a, close ones joined.
@@ -33,8 +33,8 @@ std::vector<CouplingRun> coupling_runs(const Springs& springs) {
     if (!runs.empty()) {
       CouplingRun& last = runs.back();
       const int gap = a - last.a - last.length;
-      if (last.kind == run.direction && last.b - last.a == b - a && gap >= 0 && gap <= longest_gap &&
-          run.length < shortest_run && axis != 0) {
+      const bool worth_it = gap == 0 || (gap <= longest_gap && run.length < shortest_run);
+      if (last.kind == run.direction && last.b - last.a == b - a && gap >= 0 && worth_it && axis != 0) {
         last.length += gap + run.length;
         continue;
       }

@@ -117,6 +117,8 @@ class SpringSlabs {
     for (Columns& c : in) c = columns();
     const Columns out = y.empty() ? Columns{} : columns();
 
+    // Energies of springs that another slab counts go to where nobody looks.
+    alignas(64) double w[block_size], counted_elsewhere[block_size] = {};
     double sum = 0;
     int loaded = slab.read_begin, cleared = slab.begin;
     for (std::size_t b = slab.block_begin; b < slab.block_end; ++b) {
@@ -132,7 +134,7 @@ class SpringSlabs {
         if (block.written_end > cleared) clear_columns(out + at(cleared), block.written_end - cleared);
         cleared = std::max(cleared, block.written_end);
       }
-      alignas(64) double w[block_size] = {}, counted_elsewhere[block_size] = {};
+      std::fill_n(w, block.end - block.begin, 0.0);
       for (std::size_t p = block.piece_begin; p < block.piece_end; ++p) {
         const SpringPiece& piece = pieces_[p];
         if (piece.ends == Ends::b && y.empty()) continue;
