@@ -26,13 +26,30 @@ std::string page(const Material& m) {
   const auto row = [&](const char* what, double value, const char* unit) {
     text += fmt::format("  {:<24} {:>12.6g} {}\n", what, value, unit);
   };
-  row("density", m.density, "kg/m3");
-  row("edge_modulus", m.edge_modulus, "N/m2");
-  row("face_diagonal_modulus", m.face_diagonal_modulus, "N/m2");
-  row("body_diagonal_modulus", m.body_diagonal_modulus, "N/m2");
-  row("volume_modulus", m.volume_modulus, "N/m2");
-  row("mass_damping", m.mass_damping, "1/s");
-  row("stiffness_damping", m.stiffness_damping, "s");
+  if (m.has_lattice) {
+    text += "lattice:\n";
+    row("density", m.density, "kg/m3");
+    row("edge_modulus", m.edge_modulus, "N/m2");
+    row("face_diagonal_modulus", m.face_diagonal_modulus, "N/m2");
+    row("body_diagonal_modulus", m.body_diagonal_modulus, "N/m2");
+    row("volume_modulus", m.volume_modulus, "N/m2");
+    row("mass_damping", m.mass_damping, "1/s");
+    row("stiffness_damping", m.stiffness_damping, "s");
+  }
+  if (m.shell) {
+    text += "\nshell:\n";
+    row("areal_density", m.shell->areal_density, "kg/m2");
+    row("membrane_warp", m.shell->membrane_warp, "N/m");
+    row("membrane_weft", m.shell->membrane_weft, "N/m");
+    row("membrane_shear", m.shell->membrane_shear, "N/m");
+    row("poisson", m.shell->poisson, "");
+    row("bending_warp", m.shell->bending_warp, "N m");
+    row("bending_weft", m.shell->bending_weft, "N m");
+    row("bending_bias", m.shell->bending_bias, "N m");
+    row("mass_damping", m.shell->mass_damping, "1/s");
+    row("stiffness_damping", m.shell->stiffness_damping, "s");
+    row("bending_damping", m.shell->bending_damping, "s");
+  }
   if (!m.reference.empty()) text += "\nreference (SI):\n";
   for (const auto& [what, value] : m.reference) text += fmt::format("  {:<24} {:>12.6g}\n", what, value);
   return text + "\nsource: " + m.source + "\n";

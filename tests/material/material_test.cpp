@@ -86,7 +86,7 @@ TEST(MaterialFile, WrongFilesAreErrorsAtTheirPlace) {
                         "mean `edge_modulus`?"));
   EXPECT_THAT(message("[lattice]\ndensity = 0\nedge_modulus = 1\n"), HasSubstr("m.toml:2:11: `density`"));
   EXPECT_THAT(message("[lattice]\nedge_modulus = 1\n"), HasSubstr("has no `density`"));
-  EXPECT_THAT(message("name = 'x'\n"), HasSubstr("no table [lattice]"));
+  EXPECT_THAT(message("name = 'x'\n"), HasSubstr("no table [lattice] or [shell]"));
   EXPECT_THAT(message("[lattice"), HasSubstr("m.toml:1:"));
 }
 

@@ -105,5 +105,15 @@ TEST(Shell, SaysWhatIsWrongWithTheMesh) {
   EXPECT_THAT(problem(pinched, {}), HasSubstr("no area in the texture"));
 }
 
+TEST(Shell, StretchIsTheLargestInAnyDirection) {
+  const Mesh mesh = test::flat_sheet(2, 2, 1, 1);
+  const Shell shell = build_shell(mesh, mesh.positions, along_x);
+  EXPECT_DOUBLE_EQ(max_stretch(shell, mesh.positions), 1);
+  // A simple shear by 1 stretches its longest diagonal direction by the golden ratio.
+  std::vector<Vec3> sheared = mesh.positions;
+  for (Vec3& p : sheared) p.x() += p.z();
+  EXPECT_NEAR(max_stretch(shell, sheared), std::numbers::phi, 1e-12);
+}
+
 }  // namespace
 }  // namespace muslin

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -38,7 +39,8 @@ struct Track {
 };
 
 struct BodyTracks {
-  Track skin, contour, lattice;
+  Track skin;
+  std::optional<Track> contour, lattice;  // not of shells
   Mesh skin_mesh, contour_mesh;
   RunReader::LatticeShape shape;
 };
@@ -69,7 +71,15 @@ struct RunReader::Parts {
 
   const BodyTracks& body(int index) const { return bodies.at(static_cast<std::size_t>(index)); }
   const Track& track(int index, SurfaceKind surface) const {
-    return surface == SurfaceKind::skin ? body(index).skin : body(index).contour;
+    require(index, surface);
+    return surface == SurfaceKind::skin ? body(index).skin : *body(index).contour;
+  }
+  void require(int index, SurfaceKind surface) const {
+    if (surface == SurfaceKind::skin || body(index).contour) return;
+    throw Error(
+        ErrorKind::usage, {directory.string()},
+        "the body \"" + names.at(static_cast<std::size_t>(index)) + "\" is a shell, which has no contour",
+        "take its skin");
   }
 };
 
@@ -94,16 +104,8 @@ RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
     parts.names.push_back(body["name"]);
     const BodyFiles files = body_files(parts.names.back());
     const auto track = [&](const std::string& name) { return Track{Pc2Reader(parts.directory / name)}; };
-    VtkVoxels voxels = read_voxels(parts.directory / files.lattice_mesh);
-    BodyTracks tracks{track(files.skin_cache),
-                      track(files.contour_cache),
-                      track(files.lattice_cache),
-                      read_mesh(parts.directory / files.skin_mesh).mesh,
-                      {},
-                      {std::move(voxels.points), std::move(voxels.voxels)}};
-    // Where the voxels are far larger than the body, no contour lies between them.
-    if (tracks.contour.cache.points() > 0)
-      tracks.contour_mesh = read_mesh(parts.directory / files.contour_mesh).mesh;
+    BodyTracks tracks{
+        track(files.skin_cache), {}, {}, read_mesh(parts.directory / files.skin_mesh).mesh, {}, {}};
     const auto fit = [&](const Track& points, std::size_t count, const std::string& file) {
       if (points.cache.points() != count) {
         throw Error(ErrorKind::input, {(parts.directory / file).string()},
@@ -112,8 +114,17 @@ RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
       frames = std::min(frames, static_cast<std::size_t>(points.cache.samples()));
     };
     fit(tracks.skin, tracks.skin_mesh.vertex_count(), files.skin_cache);
-    fit(tracks.contour, tracks.contour_mesh.vertex_count(), files.contour_cache);
-    fit(tracks.lattice, tracks.shape.rest_positions.size(), files.lattice_cache);
+    if (body.value("model", "") != "shell") {
+      VtkVoxels voxels = read_voxels(parts.directory / files.lattice_mesh);
+      tracks.shape = {std::move(voxels.points), std::move(voxels.voxels)};
+      tracks.contour = track(files.contour_cache);
+      tracks.lattice = track(files.lattice_cache);
+      // Where the voxels are far larger than the body, no contour lies between them.
+      if (tracks.contour->cache.points() > 0)
+        tracks.contour_mesh = read_mesh(parts.directory / files.contour_mesh).mesh;
+      fit(*tracks.contour, tracks.contour_mesh.vertex_count(), files.contour_cache);
+      fit(*tracks.lattice, tracks.shape.rest_positions.size(), files.lattice_cache);
+    }
     parts.bodies.push_back(std::move(tracks));
   }
   parts.diagnostics.resize(frames);
@@ -151,7 +162,9 @@ int RunReader::find_body(const std::string& name) const {
               "choose one with --body: " + known);
 }
 
+bool RunReader::is_shell(int body) const { return !parts_->body(body).lattice; }
 const Mesh& RunReader::mesh(int body, SurfaceKind surface) const {
+  parts_->require(body, surface);
   return surface == SurfaceKind::skin ? parts_->body(body).skin_mesh : parts_->body(body).contour_mesh;
 }
 std::vector<Vec3f> RunReader::points(int body, SurfaceKind surface, int frame) const {
@@ -162,10 +175,10 @@ std::vector<Vec3f> RunReader::velocities(int body, SurfaceKind surface, int fram
 }
 const RunReader::LatticeShape& RunReader::lattice(int body) const { return parts_->body(body).shape; }
 std::vector<Vec3f> RunReader::lattice_points(int body, int frame) const {
-  return parts_->body(body).lattice.at(frame);
+  return parts_->body(body).lattice.value().at(frame);
 }
 std::vector<Vec3f> RunReader::lattice_velocities(int body, int frame) const {
-  return parts_->body(body).lattice.velocities(frame, parts_->frames, parts_->frame_rate);
+  return parts_->body(body).lattice.value().velocities(frame, parts_->frames, parts_->frame_rate);
 }
 
 }  // namespace muslin

@@ -22,6 +22,7 @@
 #include "muslin/core/parallel.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/describe.hpp"
+#include "muslin/scene/names.hpp"
 #include "muslin/simulation/checkpoint.hpp"
 
 namespace muslin {
@@ -66,7 +67,8 @@ std::string as_text(const std::vector<std::uint8_t>& bytes) { return {bytes.begi
 
 /// The open caches of a body.
 struct BodyCaches {
-  Pc2Writer skin, contour, lattice;
+  Pc2Writer skin;
+  std::optional<Pc2Writer> contour, lattice;  // a shell's skin is all there is of it
 };
 
 }  // namespace
@@ -143,6 +145,7 @@ void RunWriter::Parts::start() {
   for (const Body& body : model.bodies) {
     const BodyFiles files = body_files(body.name);
     write_mesh(directory / files.skin_mesh, body.mesh);
+    if (body.is_shell()) continue;
     write_mesh(directory / files.contour_mesh, body.contour.mesh);
     VtkGrid grid;
     grid.points = flat(model.of(body, model.rest_positions));
@@ -165,9 +168,10 @@ void RunWriter::Parts::open_files(int frames) {
     const auto open = [&](const std::string& name, std::size_t points) {
       return Pc2Writer(directory / name, points, mode, frames);
     };
-    caches.push_back({open(files.skin_cache, body.mesh.vertex_count()),
-                      open(files.contour_cache, body.contour.mesh.vertex_count()),
-                      open(files.lattice_cache, static_cast<std::size_t>(body.vertex_count))});
+    caches.push_back({open(files.skin_cache, body.mesh.vertex_count()), {}, {}});
+    if (body.is_shell()) continue;
+    caches.back().contour = open(files.contour_cache, body.contour.mesh.vertex_count());
+    caches.back().lattice = open(files.lattice_cache, static_cast<std::size_t>(body.vertex_count));
   }
   const auto table = [&](const char* name, std::string_view header) {
     const fs::path path = directory / name;
@@ -242,18 +246,19 @@ void RunWriter::Parts::append_points() {
     points.resize(body.skin.size());
     body.skin.apply(q, points);
     caches[b].skin.append(points);
+    if (body.is_shell()) continue;
     points.resize(body.contour.embedding.size());
     body.contour.embedding.apply(q, points);
-    caches[b].contour.append(points);
-    caches[b].lattice.append(q);
+    caches[b].contour->append(points);
+    caches[b].lattice->append(q);
   }
 }
 
 void RunWriter::Parts::sync() {
   for (BodyCaches& cache : caches) {
     cache.skin.sync();
-    cache.contour.sync();
-    cache.lattice.sync();
+    if (cache.contour) cache.contour->sync();
+    if (cache.lattice) cache.lattice->sync();
   }
   diagnostics.sync();
   probes.sync();
@@ -297,10 +302,14 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
   run["bodies"] = Json::array();
   for (const Body& body : model.bodies) {
     const BodyFiles files = body_files(body.name);
-    run["bodies"].push_back({{"name", body.name},
-                             {"skin", {{"mesh", files.skin_mesh}, {"cache", files.skin_cache}}},
-                             {"contour", {{"mesh", files.contour_mesh}, {"cache", files.contour_cache}}},
-                             {"lattice", {{"mesh", files.lattice_mesh}, {"cache", files.lattice_cache}}}});
+    Json entry = {{"name", body.name},
+                  {"model", name_of(body_model_names(), body.model)},
+                  {"skin", {{"mesh", files.skin_mesh}, {"cache", files.skin_cache}}}};
+    if (!body.is_shell()) {
+      entry["contour"] = {{"mesh", files.contour_mesh}, {"cache", files.contour_cache}};
+      entry["lattice"] = {{"mesh", files.lattice_mesh}, {"cache", files.lattice_cache}};
+    }
+    run["bodies"].push_back(entry);
   }
   run["warnings"] = model.warnings;
   run["scene"] = parsed_scene(model);

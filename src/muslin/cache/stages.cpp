@@ -61,6 +61,25 @@ VtkGrid spring_lines(const Springs& springs, std::vector<double> points) {
   return grid;
 }
 
+/// Triangles with the direction of their warp.
+VtkGrid triangles(const Body& body, std::vector<double> points) {
+  VtkGrid grid;
+  grid.points = std::move(points);
+  std::vector<double> warps;
+  for (std::size_t t = 0; t < body.shell.triangles.size(); ++t) {
+    const Vec3i& v = body.shell.triangles[t];
+    const std::array<std::int64_t, 3> corners = {v[0], v[1], v[2]};
+    grid.add_cell(VtkCell::triangle, corners.data(), 3);
+    const auto x = [&](int c) { return body.mesh.positions[static_cast<std::size_t>(v[c])]; };
+    const Mat2& inverse = body.shell.inverses[t];
+    const Vec3 warp = (x(1) - x(0)) * inverse(0, 0) + (x(2) - x(0)) * inverse(1, 0);
+    warps.insert(warps.end(), warp.data(), warp.data() + 3);
+  }
+  grid.cell_data.push_back({"warp", 3, std::move(warps)});
+  grid.cell_data.push_back({"rest_area", 1, body.shell.areas});
+  return grid;
+}
+
 }  // namespace
 
 void write_stages(const std::filesystem::path& directory, const Model& model, const Progress& progress) {
@@ -69,6 +88,11 @@ void write_stages(const std::filesystem::path& directory, const Model& model, co
     body_files(body.name);  // refuses names that cannot be file names
     const auto at = [&](const char* stage) { return directory / (body.name + "." + stage); };
     const std::vector<double> rest = flat(model.of(body, model.rest_positions));
+    if (body.is_shell()) {
+      write_vtu(at("shell.vtu"), triangles(body, rest));
+      write_mesh(at("skin.obj"), body.mesh);
+      continue;
+    }
     write_vti(at("field.vti"), field_around(body, progress));
     write_vtu(at("voxels.vtu"), voxels(body.lattice, rest));
     write_vtu(at("tets.vtu"), tetrahedra(body.lattice, rest));

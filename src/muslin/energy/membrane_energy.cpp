@@ -139,17 +139,6 @@ MUSLIN_VECTOR_CODE void strained_of_kind(const MembraneEnergy::Constants& c, Sti
   stress_of_kind(kind, s);
 }
 
-MUSLIN_VECTOR_CODE void squared_stretches(const Rest& rest, const Batch<3>& x, double* largest) {
-  Vector a, b;
-  along_threads(rest, x, a, b);
-  for (int l = 0; l < lanes; ++l) {
-    const double aa = a[0][l] * a[0][l] + a[1][l] * a[1][l] + a[2][l] * a[2][l];
-    const double bb = b[0][l] * b[0][l] + b[1][l] * b[1][l] + b[2][l] * b[2][l];
-    const double ab = a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l];
-    largest[l] = 0.5 * (aa + bb) + std::sqrt(0.25 * (aa - bb) * (aa - bb) + ab * ab);
-  }
-}
-
 std::vector<std::array<int, 3>> corners_of(const Shell& shell) {
   std::vector<std::array<int, 3>> corners;
   for (const Vec3i& t : shell.triangles) corners.push_back({t[0], t[1], t[2]});
@@ -234,23 +223,6 @@ void MembraneEnergy::add_stiffness_blocks(Stiffness kind, ConstVectors x, std::s
       }
     }
   });
-}
-
-double MembraneEnergy::max_stretch(ConstVectors x) const {
-  struct Largest {
-    double square = 0;
-    Largest operator+(const Largest& other) const { return {std::max(square, other.square)}; }
-  };
-  return std::sqrt(slabs_
-                       .sum(Largest{},
-                            [&](int first, int count) {
-                              Batch<3> corners;
-                              double squares[lanes];
-                              slabs_.gather(first, count, x, corners);
-                              squared_stretches(rest_at(rest_, first), corners, squares);
-                              return Largest{*std::max_element(squares, squares + count)};
-                            })
-                       .square);
 }
 
 }  // namespace muslin

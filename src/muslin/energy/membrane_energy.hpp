@@ -38,9 +38,6 @@ class MembraneEnergy : public ShellEnergy {
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
 
-  /// Largest singular value of F over all triangles: the largest stretch in any direction.
-  double max_stretch(ConstVectors x) const;
-
   struct Constants {
     double c11 = 0, c12 = 0, c22 = 0, g = 0;  ///< [N/m]
   };

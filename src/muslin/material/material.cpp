@@ -29,19 +29,26 @@ Material read_material(const std::filesystem::path& file) {
 
 Material parse_material(std::string_view text, const std::string& file) {
   const TomlValue root = parse_toml(text, file);
-  const TomlTable top(root, "the material file", {"name", "description", "source", "lattice", "reference"});
+  const TomlTable top(root, "the material file",
+                      {"name", "description", "source", "lattice", "shell", "reference"});
   Material material;
   material.name = top.string("name", std::filesystem::path(file).stem().string());
   material.description = top.string("description", "");
   material.source = top.string("source", "");
   const auto lattice = top.table("lattice", material_keys());
-  if (!lattice) {
-    throw Error(ErrorKind::input, Place{file, 0, 0}, "the material file has no table [lattice]",
-                "add [lattice] with density, edge_modulus, …");
+  if (const auto shell = top.table("shell", shell_material_keys()))
+    material.shell = read_shell_material(*shell);
+  material.has_lattice = lattice.has_value();
+  if (!lattice && !material.shell) {
+    throw Error(
+        ErrorKind::input, Place{file, 0, 0}, "the material file has no table [lattice] or [shell]",
+        "add [lattice] with density, edge_modulus, … or [shell] with areal_density, membrane_warp, …");
   }
-  lattice->number("density", "kg/m³", Range::positive());
-  lattice->number("edge_modulus", "N/m²", Range::non_negative());
-  read_material_keys(*lattice, material);
+  if (lattice) {
+    lattice->number("density", "kg/m³", Range::positive());
+    lattice->number("edge_modulus", "N/m²", Range::non_negative());
+    read_material_keys(*lattice, material);
+  }
   if (const TomlValue* reference = top.find("reference")) {
     if (reference->type != TomlValue::Type::table) {
       throw top.error("reference", "`reference` is not a table", "write [reference]");

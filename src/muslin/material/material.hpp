@@ -2,18 +2,23 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "muslin/material/shell_material.hpp"
+
 namespace muslin {
 
-/// Lattice material. A spring's constant is modulus × voxel width.
+/// The numbers of a lattice, whose spring constants are modulus × voxel width, and those of a shell. A
+/// material has at least one of the two.
 struct Material {
   std::string name;
   std::string description;
   std::string source;                ///< where the numbers are from
+  bool has_lattice = true;           ///< the next seven numbers mean something
   double density = 0;                ///< [kg/m³]
   double edge_modulus = 0;           ///< [N/m²]
   double face_diagonal_modulus = 0;  ///< [N/m²]
@@ -21,6 +26,7 @@ struct Material {
   double volume_modulus = 0;         ///< stiffness of tetrahedral volume conservation [N/m²], 0: off
   double mass_damping = 0;           ///< Rayleigh α [1/s]
   double stiffness_damping = 0;      ///< Rayleigh β [s]
+  std::optional<ShellMaterial> shell;
   /// Measured numbers of the real material that go with it, for the reader; the simulation uses none.
   std::vector<std::pair<std::string, double>> reference;
 };
@@ -31,8 +37,9 @@ std::vector<std::string> material_names();
 /// The material of this name. Errors: input, naming the nearest one.
 Material find_material(const std::string& name);
 
-/// A material file: `name`, `description`, `source`, a table [lattice] with the quantities above and a table
-/// [reference] of free numbers. Errors: file; input with file, line and column.
+/// A material file: `name`, `description`, `source`, a table [lattice] and a table [shell] with the
+/// quantities above, one of them or both, and a table [reference] of free numbers. Errors: file; input with
+/// file, line and column.
 Material read_material(const std::filesystem::path& file);
 Material parse_material(std::string_view text, const std::string& file);
 

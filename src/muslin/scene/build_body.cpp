@@ -31,17 +31,37 @@ auto at_place(const Place& place, const std::string& file, const Build& build) -
   }
 }
 
+/// J = 1.
+Embedding identity_embedding(std::size_t count) {
+  Embedding embedding;
+  for (std::size_t v = 0; v < count; ++v) {
+    embedding.vertices.emplace_back().fill(static_cast<int>(v));
+    embedding.weights.push_back({1});
+  }
+  embedding.prepare_transpose(count);
+  return embedding;
+}
+
 class BodyBuilder {
  public:
   BodyBuilder(const Scene& scene, const BodySettings& settings, std::vector<std::string>& warnings)
-      : settings_(settings), file_(resolve_path(scene, settings.mesh)), warnings_(warnings) {}
+      : settings_(settings),
+        file_(resolve_path(scene, settings.mesh)),
+        rest_file_(resolve_path(scene, settings.rest_mesh)),
+        warnings_(warnings) {}
 
   Body build(const Progress& progress) {
     body_.name = settings_.name;
+    body_.model = settings_.model;
     progress.at(0.0, "mesh");
     at_place(settings_.mesh_place, file_.string(), [&] { read(); });
-    make_solid();
-    at_place(settings_.place, file_.string(), [&] { fill(progress); });
+    if (settings_.model == BodyModel::shell) {
+      const Mesh rest = rest_mesh();
+      at_place(settings_.mesh_place, file_.string(), [&] { make_shell(rest, progress); });
+    } else {
+      make_solid();
+      at_place(settings_.place, file_.string(), [&] { fill(progress); });
+    }
     return std::move(body_);
   }
 
@@ -59,6 +79,64 @@ class BodyBuilder {
     require_usable(body_.mesh, file_.string());
     body_.report = inspect(body_.mesh);
     for (const std::string& warning : body_.report.warnings) say(warning);
+  }
+
+  /// The shape without stress: the mesh as it was modelled (scaled, not turned), or another of the same
+  /// polygons.
+  Mesh rest_mesh() {
+    if (settings_.rest_mesh.empty()) return body_.mesh;
+    return at_place(settings_.rest_mesh_place, rest_file_.string(), [&] {
+      Mesh rest = read_mesh(rest_file_).mesh;
+      require_usable(rest, rest_file_.string());
+      if (rest.vertex_count() != body_.mesh.vertex_count() || rest.face_offsets != body_.mesh.face_offsets ||
+          rest.face_vertices != body_.mesh.face_vertices) {
+        throw Error(
+            ErrorKind::input,
+            fmt::format("its polygons are not those of {} ({} vertices and {} polygons against {} and {})",
+                        file_.string(), rest.vertex_count(), rest.face_count(), body_.mesh.vertex_count(),
+                        body_.mesh.face_count()),
+            "make the rest mesh by moving the vertices of a copy");
+      }
+      for (Vec3& x : rest.positions) x = settings_.scale.cwiseProduct(x);
+      return rest;
+    });
+  }
+
+  void make_shell(const Mesh& rest, const Progress& progress) {
+    progress.at(0.5, "shell");
+    Weave weave{settings_.warp};
+    if (weave.warp && settings_.rest_mesh.empty()) {
+      // The direction is one of the mesh as modelled.
+      weave.warp = placement(Vec3::Zero(), settings_.rotate, Vec3::Ones()) * *weave.warp;
+    }
+    const bool textured = !body_.mesh.corner_uvs.empty() &&
+                          *std::min_element(body_.mesh.corner_uvs.begin(), body_.mesh.corner_uvs.end()) >= 0;
+    if (!weave.warp && !textured) {
+      int axis;
+      rest.bounds().sizes().maxCoeff(&axis);
+      weave.warp = Vec3::Unit(axis);
+      const ShellMaterial& m = *settings_.material.shell;
+      if (m.membrane_warp != m.membrane_weft || m.bending_warp != m.bending_weft) {
+        say(fmt::format(
+            "the mesh has no texture coordinates; its warp is taken along {}, its longest side; set "
+            "`warp` to choose it",
+            "xyz"[axis]));
+      }
+    }
+    body_.sheet = true;
+    body_.shell = build_shell(body_.mesh, rest.positions, weave);
+    if (body_.shell.odd_faces > 0) {
+      say(fmt::format(
+          "{} triangles stand across the warp, which has no direction there; unwrap the mesh or choose "
+          "another `warp`",
+          body_.shell.odd_faces));
+    }
+    body_.skin = identity_embedding(body_.mesh.vertex_count());
+    body_.vertex_count = static_cast<int>(body_.mesh.vertex_count());
+    BodyStatistics& s = body_.statistics;
+    s.vertices = body_.vertex_count;
+    s.triangles = static_cast<std::int64_t>(body_.shell.triangles.size());
+    s.hinges = static_cast<std::int64_t>(body_.shell.hinges.size());
   }
 
   void make_solid() {
@@ -151,7 +229,7 @@ class BodyBuilder {
   }
 
   const BodySettings& settings_;
-  std::filesystem::path file_;
+  std::filesystem::path file_, rest_file_;
   std::vector<std::string>& warnings_;
   Body body_;
 };
@@ -168,7 +246,12 @@ std::vector<double> voxel_shares(const Body& body, const BodySettings& settings)
   return std::vector<double>(body.lattice.voxel_count(), 1.0);
 }
 
-std::vector<double> lattice_masses(const Body& body, const BodySettings& settings) {
+std::vector<double> vertex_masses(const Body& body, const BodySettings& settings) {
+  if (body.is_shell()) {
+    std::vector<double> masses = body.shell.vertex_areas;
+    for (double& m : masses) m *= settings.material.shell->areal_density;
+    return masses;
+  }
   const Lattice& lattice = body.lattice;
   const std::vector<double> shares = voxel_shares(body, settings);
   const double corner = settings.material.density * lattice.width * lattice.width * lattice.width / 8;

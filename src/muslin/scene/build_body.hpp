@@ -1,4 +1,5 @@
-// From the settings of a body to its mesh, solid, lattice, springs and surfaces.
+// From the settings of a body to its mesh and all that is built on it: solid, lattice, springs, surfaces;
+// shell.
 #pragma once
 
 #include <string>
@@ -17,8 +18,9 @@ Body build_body(const Scene& scene, const BodySettings& settings, std::vector<st
 /// How full each voxel counts: its fill, or 1 if the body weighs by cells.
 std::vector<double> voxel_shares(const Body& body, const BodySettings& settings);
 
-/// #V of the body: each voxel gives an eighth of density·share·width³ to each of its corners [kg].
-std::vector<double> lattice_masses(const Body& body, const BodySettings& settings);
+/// #V of the body [kg]: each voxel gives an eighth of density·share·width³ to each of its corners; each
+/// triangle of a shell a third of areal density·area.
+std::vector<double> vertex_masses(const Body& body, const BodySettings& settings);
 
 /// #springs: what each spring's constant is multiplied by; empty if that is 1 for all.
 std::vector<float> spring_weights(const Body& body, const BodySettings& settings);

@@ -8,6 +8,7 @@
 #include "muslin/force/gravity.hpp"
 #include "muslin/force/point_force.hpp"
 #include "muslin/force/wind.hpp"
+#include "muslin/geometry/closest_point.hpp"
 #include "muslin/scene/select.hpp"
 
 namespace muslin {
@@ -81,6 +82,26 @@ void add_wind(Model& model, const ForceSettings& force) {
   }
 }
 
+/// The point of the shell nearest to `at`, carried by the corners of its triangle.
+Embedding point_of_shell(Model& model, const Body& body, const ProbeSettings& settings) {
+  const ClosestPoint nearest = ClosestPointQuery(body.mesh.positions, body.shell.triangles)(settings.at);
+  const Vec3i& triangle = body.shell.triangles[static_cast<std::size_t>(nearest.triangle)];
+  Embedding point;
+  point.vertices.emplace_back().fill(triangle[0]);
+  point.weights.emplace_back().fill(0);
+  for (int c = 0; c < 3; ++c) {
+    point.vertices[0][static_cast<std::size_t>(c)] = triangle[c];
+    point.weights[0][static_cast<std::size_t>(c)] = nearest.barycentric[c];
+  }
+  if (nearest.distance > body.spacing()) {
+    model.warnings.push_back(
+        fmt::format("probe {}: `at` lies {:.3g} m from body `{}`; it moves with the nearest "
+                    "point",
+                    settings.name, nearest.distance, settings.body));
+  }
+  return point;
+}
+
 Vec3 centre_of(const Model& model, const std::vector<int>& vertices) {
   Vec3 sum = Vec3::Zero();
   for (const int v : vertices) sum += model.rest_positions[static_cast<std::size_t>(v)];
@@ -126,6 +147,11 @@ void build_probes(Model& model) {
     Probe probe;
     probe.name = settings.name;
     probe.body = static_cast<int>(at - model.bodies.begin());
+    if (at->is_shell()) {
+      probe.point = point_of_shell(model, *at, settings);
+      model.probes.push_back(std::move(probe));
+      continue;
+    }
     probe.point = embed(at->lattice, std::span(&settings.at, 1));
     const auto& weights = probe.point.weights.front();
     if (*std::min_element(weights.begin(), weights.end()) < -0.01) {

@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "muslin/energy/hinge_bending.hpp"
+#include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/spring_damping.hpp"
 #include "muslin/energy/spring_energy.hpp"
 #include "muslin/energy/volume_energy.hpp"
@@ -33,6 +35,17 @@ class BodyMaterial {
       : model_(model), body_(model.bodies[index]), settings_(model.scene.bodies[index]) {}
 
   void build() {
+    if (body_.is_shell()) {
+      build_shell_energies();
+    } else {
+      build_springs();
+    }
+    const double ratio = stiffness_.empty() ? 0 : largest_ratio(stiffness_, body_masses());
+    body_.statistics.stable_step = ratio > 0 ? 2 / std::sqrt(ratio) : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  void build_springs() {
     const Material& material = settings_.material;
     const std::array moduli = {material.edge_modulus, material.face_diagonal_modulus,
                                material.body_diagonal_modulus};
@@ -48,16 +61,33 @@ class BodyMaterial {
     if (material.stiffness_damping > 0) {
       add("stiffness damping", std::make_shared<SpringDamping>(springs, material.stiffness_damping));
     }
-    if (material.mass_damping > 0) {
-      const auto masses = body_masses();
-      add("mass damping", std::make_shared<MassDamping>(material.mass_damping,
-                                                        std::vector<double>(masses.begin(), masses.end())));
-    }
-    const double ratio = stiffness_.empty() ? 0 : largest_ratio(stiffness_, body_masses());
-    body_.statistics.stable_step = ratio > 0 ? 2 / std::sqrt(ratio) : std::numeric_limits<double>::infinity();
+    add_mass_damping(material.mass_damping);
   }
 
- private:
+  void build_shell_energies() {
+    const ShellMaterial& m = *settings_.material.shell;
+    const auto membrane = std::make_shared<MembraneEnergy>(
+        body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson});
+    add("membrane", membrane);
+    add_stiffness(*membrane, 3);
+    const auto bending = std::make_shared<HingeBending>(
+        body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias});
+    add("bending", bending);
+    add_stiffness(*bending, 4);
+    if (m.stiffness_damping > 0)
+      add("stiffness damping", std::make_shared<ShellDamping>(membrane, m.stiffness_damping));
+    if (m.bending_damping > 0)
+      add("bending damping", std::make_shared<ShellDamping>(bending, m.bending_damping));
+    add_mass_damping(m.mass_damping);
+  }
+
+  void add_mass_damping(double alpha) {
+    if (alpha == 0) return;
+    const auto masses = body_masses();
+    add("mass damping",
+        std::make_shared<MassDamping>(alpha, std::vector<double>(masses.begin(), masses.end())));
+  }
+
   std::span<const double> body_masses() const { return std::span(model_.masses).subspan(first(), count()); }
   std::size_t first() const { return static_cast<std::size_t>(body_.first_vertex); }
   std::size_t count() const { return static_cast<std::size_t>(body_.vertex_count); }

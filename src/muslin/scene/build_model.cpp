@@ -22,15 +22,15 @@ Progress body_progress(const Progress& whole, std::size_t index, std::size_t cou
 }
 
 void add_vertices(Model& model, Body& body, const BodySettings& settings) {
-  const std::size_t first = model.vertex_count(), count = body.lattice.vertex_count();
+  const std::size_t first = model.vertex_count(), count = static_cast<std::size_t>(body.vertex_count);
   if (first + count > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     throw Error(ErrorKind::input, settings.place, "all bodies together have more than 2³¹ vertices",
-                "make `voxel_width` larger");
+                "make `voxel_width` larger or meshes coarser");
   }
   body.first_vertex = static_cast<int>(first);
-  const std::vector<double> masses = lattice_masses(body, settings);
+  const std::vector<double> masses = vertex_masses(body, settings);
   for (std::size_t v = 0; v < count; ++v) {
-    model.rest_positions.push_back(body.lattice.rest_position(v));
+    model.rest_positions.push_back(body.rest_position(v));
     model.masses.push_back(masses[v]);
     body.statistics.mass += masses[v];
   }

@@ -29,15 +29,9 @@ double stable_step(const Model& model) {
   return step;
 }
 
-Json body_json(const Body& body, const BodySettings& settings) {
+/// What every body has, be it as many as none.
+void add_counts(const Body& body, const BodySettings& settings, Json& json) {
   const BodyStatistics& s = body.statistics;
-  Json json;
-  json["name"] = body.name;
-  json["mesh"] = settings.mesh;
-  json["kind"] = body.sheet ? "sheet" : "solid";
-  if (body.sheet) json["thickness"] = body.thickness;
-  json["voxel_width"] = body.lattice.width;
-  json["extent"] = {body.lattice.extent.x(), body.lattice.extent.y(), body.lattice.extent.z()};
   json["material"] = settings.material.name;
   json["vertices"] = s.vertices;
   json["voxels"] = s.voxels;
@@ -46,6 +40,29 @@ Json body_json(const Body& body, const BodySettings& settings) {
       {"edge", s.springs[0]}, {"face_diagonal", s.springs[1]}, {"body_diagonal", s.springs[2]}};
   json["mass"] = s.mass;
   json["coverage"] = s.coverage;
+}
+
+Json body_json(const Body& body, const BodySettings& settings) {
+  const BodyStatistics& s = body.statistics;
+  Json json;
+  json["name"] = body.name;
+  json["mesh"] = settings.mesh;
+  json["model"] = name_of(body_model_names(), body.model);
+  if (body.is_shell()) {
+    json["triangles"] = s.triangles;
+    json["hinges"] = s.hinges;
+    json["area"] = body.shell.area;
+    json["mean_edge"] = body.shell.mean_edge;
+    json["warp"] = settings.warp ? "given" : body.mesh.corner_uvs.empty() ? "longest side" : "texture";
+    add_counts(body, settings, json);
+    json["stable_step"] = finite(s.stable_step);
+    return json;
+  }
+  json["kind"] = body.sheet ? "sheet" : "solid";
+  if (body.sheet) json["thickness"] = body.thickness;
+  json["voxel_width"] = body.lattice.width;
+  json["extent"] = {body.lattice.extent.x(), body.lattice.extent.y(), body.lattice.extent.z()};
+  add_counts(body, settings, json);
   json["contour"] = body.contour.method == ContourMethod::squares ? "squares" : "cubes";
   json["contour_distance"] = s.contour_distance;
   json["stable_step"] = finite(s.stable_step);
@@ -63,7 +80,24 @@ std::string as_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string shell_text(const Body& body, const BodySettings& settings) {
+  const BodyStatistics& s = body.statistics;
+  const ShellMaterial& m = *settings.material.shell;
+  std::string text = fmt::format("body {}: {} ({}, shell)\n", body.name, settings.mesh,
+                                 counted(body.mesh.face_count(), "polygon"));
+  text += fmt::format("  shell       {} vertices, {} triangles, {} hinges, edges of {:.4g} m on average\n",
+                      s.vertices, s.triangles, s.hinges, body.shell.mean_edge);
+  text += fmt::format("  mass        {:.6g} kg of {}, {:.4g} kg/m² on {:.6g} m²\n", s.mass,
+                      settings.material.name, m.areal_density, body.shell.area);
+  text += fmt::format(
+      "  stiffness   warp {:.4g}, weft {:.4g}, shear {:.4g} N/m; bending {:.3g}, {:.3g}, bias "
+      "{:.3g} N·m\n",
+      m.membrane_warp, m.membrane_weft, m.membrane_shear, m.bending_warp, m.bending_weft, m.bending_bias);
+  return text;
+}
+
 std::string body_text(const Body& body, const BodySettings& settings) {
+  if (body.is_shell()) return shell_text(body, settings);
   const BodyStatistics& s = body.statistics;
   const Vec3i& n = body.lattice.extent;
   const std::string kind = body.sheet ? fmt::format("sheet, {:.4g} m thick", body.thickness) : "solid";

@@ -1,5 +1,5 @@
-// All that does not change during a run: bodies with their lattices, masses, potentials, loads, pins,
-// probes. Made once from a Scene; shared read-only by the simulation and its writers.
+// All that does not change during a run: bodies with their lattices or shells, masses, potentials, loads,
+// pins, probes. Made once from a Scene; shared read-only by the simulation and its writers.
 #pragma once
 
 #include <array>
@@ -17,35 +17,50 @@
 #include "muslin/lattice/springs.hpp"
 #include "muslin/potential/potential.hpp"
 #include "muslin/scene/scene.hpp"
+#include "muslin/shell/shell.hpp"
 #include "muslin/surface/contour.hpp"
 
 namespace muslin {
 
 struct BodyStatistics {
   std::int64_t vertices = 0, voxels = 0, tetrahedra = 0;
-  std::array<std::int64_t, 3> springs{};  ///< by SpringKind: edge, face diagonal, body diagonal
-  double mass = 0;                        ///< [kg]
-  double coverage = 1;                    ///< share of the mesh's area inside kept voxels
-  double contour_distance = 0;            ///< largest distance of the rest contour from the solid [m]
+  std::array<std::int64_t, 3> springs{};   ///< by SpringKind: edge, face diagonal, body diagonal
+  double mass = 0;                         ///< [kg]
+  double coverage = 1;                     ///< share of the mesh's area inside kept voxels
+  double contour_distance = 0;             ///< largest distance of the rest contour from the solid [m]
+  std::int64_t triangles = 0, hinges = 0;  ///< of a shell
   double stable_step = 0;  ///< below this symplectic_euler is stable at rest [s]; infinity without springs
 };
 
+/// A body of either model. A shell has neither solid, lattice, springs nor contour; its vertices are those of
+/// the mesh, in the same order, and so is its skin.
 struct Body {
   std::string name;
+  BodyModel model = BodyModel::lattice;
   Mesh mesh;  ///< the user's mesh, placed in the world; the skin's polygons, UVs and rest positions
   Mesh
       solid;  ///< what is filled with voxels: the mesh itself, faces outward, or the sheet with its thickness
-  MeshReport report;     ///< of mesh
-  bool sheet = false;    ///< the mesh is open or encloses nothing, so that it was given a thickness
-  double thickness = 0;  ///< of a sheet [m]
+  MeshReport report;  ///< of mesh
+  bool sheet =
+      false;  ///< thin: a shell, or a mesh that is open or encloses nothing and was given a thickness
+  double thickness = 0;  ///< of a sheet of voxels [m]
   Lattice lattice;
   Springs springs;
+  Shell shell;
   Embedding skin;  ///< of mesh.positions
   Contour contour;
   int first_vertex =
       0;  ///< the body's vertices are first_vertex … first_vertex + vertex_count − 1 of the state
   int vertex_count = 0;
   BodyStatistics statistics;
+
+  bool is_shell() const { return model == BodyModel::shell; }
+  /// Of the vertex counted within the body, at the start [m].
+  Vec3 rest_position(std::size_t v) const {
+    return is_shell() ? mesh.positions[v] : lattice.rest_position(v);
+  }
+  /// Typical distance of neighbouring vertices: the voxel width, or the mean edge of a shell [m].
+  double spacing() const { return is_shell() ? shell.mean_edge : lattice.width; }
 };
 
 /// How a potential enters the energy balance.

@@ -7,6 +7,10 @@ const std::vector<std::string>& integrator_names() {
                                                  "symplectic_euler"};
   return names;
 }
+const std::vector<std::string>& body_model_names() {
+  static const std::vector<std::string> names = {"lattice", "shell"};
+  return names;
+}
 const std::vector<std::string>& voxel_rule_names() {
   static const std::vector<std::string> names = {"cover", "threshold"};
   return names;

@@ -7,6 +7,7 @@
 namespace muslin {
 
 const std::vector<std::string>& integrator_names();       ///< Integrator
+const std::vector<std::string>& body_model_names();       ///< BodyModel
 const std::vector<std::string>& voxel_rule_names();       ///< VoxelRule
 const std::vector<std::string>& bracing_names();          ///< Bracing
 const std::vector<std::string>& mass_names();             ///< BodySettings::Mass

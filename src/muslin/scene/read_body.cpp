@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/core/nearest_name.hpp"
 #include "muslin/core/toml_table.hpp"
 #include "muslin/material/lattice_moduli.hpp"
 #include "muslin/material/material_table.hpp"
@@ -50,10 +51,41 @@ void read_elastic_moduli(const TomlTable& table, Bracing bracing, Material& mate
   material.body_diagonal_modulus = moduli.body_diagonal;
 }
 
-Material inline_material(const TomlTable& table, Bracing bracing, const std::filesystem::path& folder) {
+/// The names of the library's materials that have numbers for the model.
+std::vector<std::string> materials_for(BodyModel model) {
+  std::vector<std::string> names;
+  for (const std::string& name : material_names()) {
+    const Material material = find_material(name);
+    if (model == BodyModel::shell ? material.shell.has_value() : material.has_lattice) names.push_back(name);
+  }
+  return names;
+}
+
+void require_numbers(const Material& material, BodyModel model, const Place& place) {
+  if (model == BodyModel::shell ? material.shell.has_value() : material.has_lattice) return;
+  const std::string& word = name_of(body_model_names(), model);
+  throw Error(ErrorKind::input, place,
+              fmt::format("the material `{}` has no numbers for a {}", material.name, word),
+              "take one of " + name_list(materials_for(model)) + ", or an inline table");
+}
+
+Material shell_material(const TomlTable& table, const std::filesystem::path& folder) {
+  Material material;
+  material.name = "inline";
+  material.has_lattice = false;
+  if (table.has("base")) {
+    material = named_material(table.string("base"), table.place("base"), folder);
+    require_numbers(material, BodyModel::shell, table.place("base"));
+  }
+  material.shell = read_shell_material(table, material.shell ? &*material.shell : nullptr);
+  return material;
+}
+
+Material lattice_material(const TomlTable& table, Bracing bracing, const std::filesystem::path& folder) {
   Material material;
   if (table.has("base")) {
     material = named_material(table.string("base"), table.place("base"), folder);
+    require_numbers(material, BodyModel::lattice, table.place("base"));
   } else {
     table.number("density", "kg/m³", Range::positive());
     if (!table.has("youngs_modulus")) table.number("edge_modulus", "N/m²", Range::non_negative());
@@ -68,20 +100,29 @@ Material inline_material(const TomlTable& table, Bracing bracing, const std::fil
   return material;
 }
 
-Material read_body_material(const TomlTable& body, Bracing bracing, const std::filesystem::path& folder) {
+Material read_body_material(const TomlTable& body, BodyModel model, Bracing bracing,
+                            const std::filesystem::path& folder) {
+  const bool shell = model == BodyModel::shell;
+  const char* quantities = shell ? "areal_density, membrane_warp, bending_warp" : "density, edge_modulus";
   const TomlValue* value = body.find("material");
   if (value == nullptr) {
-    throw Error(ErrorKind::input, body.place(), body.title() + " has no `material`",
-                "name one (`muslin materials` lists them) or give a table with density, edge_modulus, …");
+    throw Error(
+        ErrorKind::input, body.place(), body.title() + " has no `material`",
+        fmt::format("name one (`muslin materials` lists them) or give a table with {}, …", quantities));
   }
-  if (value->type == TomlValue::Type::string) return named_material(value->string, value->place, folder);
+  if (value->type == TomlValue::Type::string) {
+    Material material = named_material(value->string, value->place, folder);
+    require_numbers(material, model, value->place);
+    return material;
+  }
   if (value->type != TomlValue::Type::table) {
     throw body.error("material", "`material` of " + body.title() + " is neither a name nor a table",
-                     "write material = \"cotton\" or material = { density = …, edge_modulus = … }");
+                     fmt::format("write material = \"cotton\" or a table {{ … }} with {}", quantities));
   }
   refuse_reserved_keys(*value);
-  return inline_material(TomlTable(*value, "`material` of " + body.title(), known_keys("body.material")),
-                         bracing, folder);
+  const std::string title = "`material` of " + body.title();
+  if (shell) return shell_material(TomlTable(*value, title, known_keys("body.material of a shell")), folder);
+  return lattice_material(TomlTable(*value, title, known_keys("body.material")), bracing, folder);
 }
 
 Vec3 read_scale(const TomlTable& body) {
@@ -92,12 +133,52 @@ Vec3 read_scale(const TomlTable& body) {
   return Vec3::Constant(to_number(*value, name, "", Range::positive()));
 }
 
-void refuse_shell(const TomlTable& body) {
-  if (body.has("model") && body.string("model") == "shell") {
-    throw body.error("model", "`model = \"shell\"` is not available yet in this version",
-                     "use `model = \"lattice\"`");
+BodyModel read_model(const TomlTable& body) {
+  const auto model = static_cast<BodyModel>(body.choice("model", body_model_names(), 0));
+  static const std::vector<std::string> of_lattices = {
+      "voxel_width", "voxels", "threshold", "bracing", "mass", "thickness", "boundary_springs"};
+  static const std::vector<std::string> of_shells = {"rest_mesh", "warp"};
+  const bool shell = model == BodyModel::shell;
+  for (const std::string& key : shell ? of_lattices : of_shells) {
+    if (!body.has(key)) continue;
+    throw body.error(key, fmt::format("`{}` is a setting of {}", key, shell ? "lattices" : "shells"),
+                     fmt::format("take it out, or set `model = \"{}\"`", shell ? "lattice" : "shell"));
   }
-  body.choice("model", {"lattice"}, 0);
+  return model;
+}
+
+std::string read_path(const TomlTable& body, const char* key) {
+  const std::string path = body.string(key);
+  if (path.empty() || path.find('\0') != std::string::npos)
+    throw body.error(key, fmt::format("`{}` is no path", key), "name a mesh file");
+  return path;
+}
+
+void read_shell_settings(const TomlTable& table, BodySettings& body) {
+  if (table.has("rest_mesh")) {
+    body.rest_mesh = read_path(table, "rest_mesh");
+    body.rest_mesh_place = table.place("rest_mesh");
+  }
+  if (!table.has("warp")) return;
+  body.warp = table.vector("warp", "direction");
+  if (!(body.warp->norm() > 0)) {
+    throw table.error("warp", "`warp` is no direction",
+                      "give a vector along the warp threads, such as [1, 0, 0]");
+  }
+}
+
+void read_lattice_settings(const TomlTable& table, BodySettings& body, std::vector<std::string>& warnings) {
+  if (table.has("thickness")) body.thickness = table.number("thickness", "m", Range::positive());
+  body.lattice.width = table.number("voxel_width", "m", {1e-6, 1e6, false});
+  body.lattice.rule = static_cast<VoxelRule>(table.choice("voxels", voxel_rule_names(), 0));
+  body.lattice.threshold = table.number("threshold", "voxel widths", {-10, 10, false}, 0.5);
+  if (table.has("threshold") && body.lattice.rule != VoxelRule::threshold) {
+    warnings.push_back(table.title() + ": `threshold` has no effect without `voxels = \"threshold\"`");
+  }
+  body.bracing = static_cast<Bracing>(table.choice("bracing", bracing_names(), 0));
+  body.mass = static_cast<BodySettings::Mass>(table.choice("mass", mass_names(), 0));
+  body.boundary_springs = static_cast<BodySettings::BoundarySprings>(
+      table.choice("boundary_springs", boundary_spring_names(), 0));
 }
 
 }  // namespace
@@ -120,31 +201,26 @@ BodySettings read_body(const TomlValue& value, std::size_t index, const std::fil
   const bool has_name = given != nullptr && given->type == TomlValue::Type::string;
   const TomlTable table(value, "[[body]] " + (has_name ? given->string : std::to_string(index)),
                         known_keys("body"));
-  refuse_shell(table);
   BodySettings body;
   body.place = table.place();
-  body.mesh = table.string("mesh");
+  body.mesh = read_path(table, "mesh");
   body.mesh_place = table.place("mesh");
-  if (body.mesh.empty() || body.mesh.find('\0') != std::string::npos) {
-    throw table.error("mesh", "`mesh` is no path", "name a mesh file");
-  }
   body.name = table.string("name", std::filesystem::path(body.mesh).stem().string());
   require_name(body.name, table.place("name"));
-  if (table.has("thickness")) body.thickness = table.number("thickness", "m", Range::positive());
-  body.lattice.width = table.number("voxel_width", "m", {1e-6, 1e6, false});
-  body.lattice.rule = static_cast<VoxelRule>(table.choice("voxels", voxel_rule_names(), 0));
-  body.lattice.threshold = table.number("threshold", "voxel widths", {-10, 10, false}, 0.5);
-  if (table.has("threshold") && body.lattice.rule != VoxelRule::threshold) {
-    warnings.push_back(table.title() + ": `threshold` has no effect without `voxels = \"threshold\"`");
+  body.model = read_model(table);
+  if (body.model == BodyModel::shell) {
+    read_shell_settings(table, body);
+  } else {
+    read_lattice_settings(table, body, warnings);
   }
-  body.bracing = static_cast<Bracing>(table.choice("bracing", bracing_names(), 0));
-  body.mass = static_cast<BodySettings::Mass>(table.choice("mass", mass_names(), 0));
-  body.boundary_springs = static_cast<BodySettings::BoundarySprings>(
-      table.choice("boundary_springs", boundary_spring_names(), 0));
-  body.material = read_body_material(table, body.bracing, folder);
-  if (body.material.face_diagonal_modulus == 0 && body.material.body_diagonal_modulus == 0) {
+  body.material = read_body_material(table, body.model, body.bracing, folder);
+  if (body.model == BodyModel::shell
+          ? body.material.shell->membrane_shear == 0
+          : body.material.face_diagonal_modulus == 0 && body.material.body_diagonal_modulus == 0) {
     warnings.push_back(table.title() +
-                       ": a material without stiffness along diagonals does not resist shear");
+                       (body.model == BodyModel::shell
+                            ? ": a material without `membrane_shear` does not resist shear"
+                            : ": a material without stiffness along diagonals does not resist shear"));
   }
   body.translate = table.vector("translate", "m", Vec3::Zero());
   body.rotate = table.vector("rotate", "degrees", Vec3::Zero());

@@ -247,7 +247,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file,
   });
   if (scene.bodies.empty()) {
     throw Error(ErrorKind::input, root.place, "the scene has no body",
-                "add a [[body]] with `mesh`, `voxel_width` and `material`");
+                "add a [[body]] with `mesh`, `material` and `voxel_width`, or `model = \"shell\"`");
   }
   read_list(top, "pin", scene.pins,
             [&](const TomlValue& value, std::size_t index) { return read_pin(value, index, scene); });

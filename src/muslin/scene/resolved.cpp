@@ -47,8 +47,23 @@ Json material(const Material& m) {
           {"stiffness_damping", m.stiffness_damping}};
 }
 
-Json body(const BodySettings& b) {
-  Json json = {{"name", b.name}, {"mesh", b.mesh}, {"model", "lattice"}};
+Json shell_material(const Material& material) {
+  const ShellMaterial& m = *material.shell;
+  return {{"name", material.name},
+          {"areal_density", m.areal_density},
+          {"membrane_warp", m.membrane_warp},
+          {"membrane_weft", m.membrane_weft},
+          {"membrane_shear", m.membrane_shear},
+          {"poisson", m.poisson},
+          {"bending_warp", m.bending_warp},
+          {"bending_weft", m.bending_weft},
+          {"bending_bias", m.bending_bias},
+          {"mass_damping", m.mass_damping},
+          {"stiffness_damping", m.stiffness_damping},
+          {"bending_damping", m.bending_damping}};
+}
+
+void add_lattice(const BodySettings& b, Json& json) {
   json["thickness"] = b.thickness.value_or(b.lattice.width);
   json["voxel_width"] = b.lattice.width;
   json["voxels"] = name_of(voxel_rule_names(), b.lattice.rule);
@@ -57,6 +72,21 @@ Json body(const BodySettings& b) {
   json["mass"] = name_of(mass_names(), b.mass);
   json["boundary_springs"] = name_of(boundary_spring_names(), b.boundary_springs);
   json["material"] = material(b.material);
+}
+
+void add_shell(const BodySettings& b, Json& json) {
+  if (!b.rest_mesh.empty()) json["rest_mesh"] = b.rest_mesh;
+  if (b.warp) json["warp"] = vector(*b.warp);
+  json["material"] = shell_material(b.material);
+}
+
+Json body(const BodySettings& b) {
+  Json json = {{"name", b.name}, {"mesh", b.mesh}, {"model", name_of(body_model_names(), b.model)}};
+  if (b.model == BodyModel::shell) {
+    add_shell(b, json);
+  } else {
+    add_lattice(b, json);
+  }
   json["translate"] = vector(b.translate);
   json["rotate"] = vector(b.rotate);
   json["scale"] = vector(b.scale);

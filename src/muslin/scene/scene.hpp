@@ -29,8 +29,14 @@ struct TimeSettings {
   double step() const { return 1.0 / (frame_rate * steps_per_frame); }  ///< [s]
 };
 
-/// Where in a body: the lattice vertices that satisfy every criterion given. Coordinates are those of the
-/// world at rest, after the body has been placed.
+/// What a body's degrees of freedom are.
+enum class BodyModel {
+  lattice,  ///< voxels filled into the mesh, with springs
+  shell,    ///< the mesh itself, as thin cloth
+};
+
+/// Where in a body: the vertices (of its lattice, or of its mesh if it is a shell) that satisfy every
+/// criterion given. Coordinates are those of the world at rest, after the body has been placed.
 struct Selection {
   struct BoxShape {
     Vec3 min, max;
@@ -42,13 +48,14 @@ struct Selection {
   /// |(x − point)·normal| ≤ distance
   struct PlaneShape {
     Vec3 point, normal;              ///< the normal has length 1
-    std::optional<double> distance;  ///< [m]; default: half a voxel width, so that one layer is always met
+    std::optional<double> distance;  ///< [m]; default: half a voxel width (shell: half a mean edge), so that
+                                     ///< one layer is always met
   };
   /// Within distance of the segment.
   struct LineShape {
     Vec3 a, b;
-    std::optional<double> distance;  ///< [m]; default: ¾ of a voxel width, so that a line in the middle of
-                                     ///< a sheet of one voxel meets both of its sides
+    std::optional<double> distance;  ///< [m]; default: ¾ of a voxel width or mean edge, so that a line in the
+                                     ///< middle of a sheet of one voxel meets both of its sides
   };
   std::optional<std::string> group;  ///< the vertices that carry this group of the body's mesh
   std::optional<BoxShape> box;
@@ -63,12 +70,19 @@ struct BodySettings {
   std::string name;
   std::string mesh;  ///< path as written; relative to the scene file
   Place mesh_place;
+  BodyModel model = BodyModel::lattice;
+  // Of shells.
+  std::string rest_mesh;  ///< path of the shape without stress; empty: `mesh`
+  Place rest_mesh_place;
+  std::optional<Vec3>
+      warp;  ///< direction of the warp threads; default: along the texture's u, or the longest side
+  // Of lattices.
   std::optional<double> thickness;  ///< of an open mesh [m]; default: one voxel width
   LatticeSettings lattice;
   Bracing bracing = Bracing::kuhn;
   enum class Mass { solid, cells } mass = Mass::solid;
   enum class BoundarySprings { full, shared } boundary_springs = BoundarySprings::full;
-  Material material;
+  Material material;              ///< has the numbers of the model
   Vec3 translate = Vec3::Zero();  ///< [m]
   Vec3 rotate = Vec3::Zero();     ///< Euler angles about x, then y, then z [degrees]
   Vec3 scale = Vec3::Ones();

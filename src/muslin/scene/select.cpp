@@ -13,7 +13,7 @@
 namespace muslin {
 namespace {
 
-constexpr double tolerance = 1e-6;  // in voxel widths
+constexpr double tolerance = 1e-6;  // in voxel widths or mean edges
 constexpr std::size_t grain = 8192;
 
 double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
@@ -28,7 +28,7 @@ struct Shape {
   std::function<double(const Vec3&)> outside;
 };
 
-std::vector<Shape> shapes_of(const Selection& where, double width) {
+std::vector<Shape> shapes_of(const Selection& where, double spacing) {
   std::vector<Shape> shapes;
   if (where.box) {
     const Box box(where.box->min, where.box->max);
@@ -41,14 +41,14 @@ std::vector<Shape> shapes_of(const Selection& where, double width) {
   }
   if (where.plane) {
     const auto plane = *where.plane;
-    const double distance = plane.distance.value_or(width / 2);
+    const double distance = plane.distance.value_or(spacing / 2);
     shapes.push_back({"plane", [plane, distance](const Vec3& x) {
                         return std::abs((x - plane.point).dot(plane.normal)) - distance;
                       }});
   }
   if (where.line) {
     const auto line = *where.line;
-    const double distance = line.distance.value_or(0.75 * width);
+    const double distance = line.distance.value_or(0.75 * spacing);
     shapes.push_back({"line", [line, distance](const Vec3& x) {
                         return distance_to_segment(x, line.a, line.b) - distance;
                       }});
@@ -99,16 +99,16 @@ class Selector {
       : body_(body),
         where_(where),
         what_(what),
-        shapes_(shapes_of(where, body.lattice.width)),
-        slack_(tolerance * body.lattice.width),
-        kept_(body.lattice.vertex_count(), 1) {}
+        shapes_(shapes_of(where, body.spacing())),
+        slack_(tolerance * body.spacing()),
+        kept_(static_cast<std::size_t>(body.vertex_count), 1) {}
 
   std::vector<int> select() {
     if (where_.group) keep_group();
     const std::vector<std::uint8_t> of_group = kept_;
     parallel_for(kept_.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        const Vec3 x = body_.lattice.rest_position(v);
+        const Vec3 x = body_.rest_position(v);
         for (const Shape& shape : shapes_) kept_[v] &= shape.outside(x) <= slack_;
       }
     });
@@ -124,6 +124,10 @@ class Selector {
  private:
   void keep_group() {
     const MeshGroup& group = find_group(body_, where_, what_);
+    if (body_.is_shell()) {
+      keep_vertices_of(group);
+      return;
+    }
     const std::vector<Vec3> points = group_points(body_.mesh, group, body_.lattice.width);
     const Embedding carriers = embed(body_.lattice, points);
     std::fill(kept_.begin(), kept_.end(), 0);
@@ -133,11 +137,21 @@ class Selector {
         kept_[static_cast<std::size_t>(carriers.vertices[p][s])] = 1;
       }
     }
-    if (points.empty()) {
-      throw Error(ErrorKind::input, where_.place,
-                  fmt::format("{}: the group `{}` is empty", what_, group.name),
-                  "fill the group in the modeller or select by a shape");
+    if (points.empty()) refuse_empty(group);
+  }
+
+  void keep_vertices_of(const MeshGroup& group) {
+    std::fill(kept_.begin(), kept_.end(), 0);
+    for (const int v : group.vertices) kept_[static_cast<std::size_t>(v)] = 1;
+    for (const int f : group.faces) {
+      for (const int v : body_.mesh.face(static_cast<std::size_t>(f))) kept_[static_cast<std::size_t>(v)] = 1;
     }
+    if (group.vertices.empty() && group.faces.empty()) refuse_empty(group);
+  }
+
+  [[noreturn]] void refuse_empty(const MeshGroup& group) const {
+    throw Error(ErrorKind::input, where_.place, fmt::format("{}: the group `{}` is empty", what_, group.name),
+                "fill the group in the modeller or select by a shape");
   }
 
   void keep_nearest() {
@@ -145,7 +159,7 @@ class Selector {
     for (const Vec3& point : where_.nearest) {
       const double least = least_over(kept_, [&](const Vec3& x) { return (x - point).norm(); }).distance;
       for (std::size_t v = 0; v < kept_.size(); ++v) {
-        if (kept_[v] && (body_.lattice.rest_position(v) - point).norm() <= least + slack_) near[v] = 1;
+        if (kept_[v] && (body_.rest_position(v) - point).norm() <= least + slack_) near[v] = 1;
       }
     }
     kept_ = std::move(near);
@@ -161,7 +175,7 @@ class Selector {
     return parallel_sum(among.size(), grain, Least{}, [&](std::size_t begin, std::size_t end) {
       Least least;
       for (std::size_t v = begin; v < end; ++v) {
-        if (among[v]) least = least + Least{distance(body_.lattice.rest_position(v)), v};
+        if (among[v]) least = least + Least{distance(body_.rest_position(v)), v};
       }
       return least;
     });
@@ -175,7 +189,7 @@ class Selector {
     });
     std::string names;
     for (const Shape& shape : shapes_) names += (names.empty() ? "`" : " and `") + shape.name + "`";
-    const Vec3 x = body_.lattice.rest_position(least.vertex);
+    const Vec3 x = body_.rest_position(least.vertex);
     throw Error(ErrorKind::input, where_.place,
                 fmt::format("{}: no vertex of body `{}` lies within {}", what_, body_.name, names),
                 fmt::format("the nearest is [{:.6g}, {:.6g}, {:.6g}], {:.3g} m outside", x.x(), x.y(), x.z(),

@@ -5,16 +5,15 @@
 #include <cassert>
 
 #include "muslin/material/material_table.hpp"
+#include "muslin/material/shell_material.hpp"
 
 namespace muslin {
 namespace {
 
-constexpr std::array<std::string_view, 12> reserved_keys = {
-    "collider", "contact",      "areal_density", "membrane_warp", "membrane_weft", "membrane_shear",
-    "poisson",  "bending_warp", "bending_weft",  "bending_bias",  "friction",      "self_contact"};
+constexpr std::array<std::string_view, 4> reserved_keys = {"collider", "contact", "friction", "self_contact"};
 
-std::vector<std::string> with_materials(std::vector<std::string> keys) {
-  keys.insert(keys.end(), material_keys().begin(), material_keys().end());
+std::vector<std::string> joined(std::vector<std::string> keys, const std::vector<std::string>& more) {
+  keys.insert(keys.end(), more.begin(), more.end());
   return keys;
 }
 
@@ -27,8 +26,10 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
       {"solver", {"integrator", "tolerance", "max_iterations", "linear_tolerance"}},
       {"body",
        {"name", "mesh", "model", "thickness", "voxel_width", "voxels", "threshold", "bracing", "mass",
-        "boundary_springs", "material", "translate", "rotate", "scale", "velocity", "colour"}},
-      {"body.material", with_materials({"base", "youngs_modulus", "shear_modulus"})},
+        "boundary_springs", "rest_mesh", "warp", "material", "translate", "rotate", "scale", "velocity",
+        "colour"}},
+      {"body.material", joined({"base", "youngs_modulus", "shear_modulus"}, material_keys())},
+      {"body.material of a shell", joined({"base"}, shell_material_keys())},
       {"where", {"group", "box", "sphere", "plane", "line", "nearest"}},
       {"where.sphere", {"center", "radius"}},
       {"where.plane", {"point", "normal", "distance"}},

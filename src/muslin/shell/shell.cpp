@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
@@ -189,6 +191,30 @@ double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x
   const Vec3 e = x1 - x0;
   const Vec3 n1 = e.cross(x2 - x0), n2 = (x3 - x0).cross(e);
   return std::atan2(n1.cross(n2).dot(e.normalized()), n1.dot(n2));
+}
+
+double max_stretch(const Shell& shell, ConstVectors x) {
+  struct Largest {
+    double square = 0;
+    Largest operator+(const Largest& other) const { return {std::max(square, other.square)}; }
+  };
+  constexpr std::size_t grain = 4096;
+  const auto square_of = [&](std::size_t t) {
+    const Vec3i& v = shell.triangles[t];
+    const Vec3& x0 = x[static_cast<std::size_t>(v[0])];
+    const Vec3 e1 = x[static_cast<std::size_t>(v[1])] - x0, e2 = x[static_cast<std::size_t>(v[2])] - x0;
+    const Mat2& d = shell.inverses[t];
+    const Vec3 a = e1 * d(0, 0) + e2 * d(1, 0), b = e1 * d(0, 1) + e2 * d(1, 1);
+    const double half = 0.5 * (a.squaredNorm() - b.squaredNorm()), shear = a.dot(b);
+    return 0.5 * (a.squaredNorm() + b.squaredNorm()) + std::sqrt(half * half + shear * shear);
+  };
+  const Largest largest =
+      parallel_sum(shell.triangles.size(), grain, Largest{}, [&](std::size_t begin, std::size_t end) {
+        Largest block;
+        for (std::size_t t = begin; t < end; ++t) block.square = std::max(block.square, square_of(t));
+        return block;
+      });
+  return std::sqrt(largest.square);
 }
 
 }  // namespace muslin

@@ -19,7 +19,7 @@ namespace muslin {
 using Mat2 = Eigen::Matrix2d;
 
 /// Two triangles that share the edge of vertices 0 and 1; vertices 2 and 3 are opposite to it.
-struct Hinge {
+struct Hinge {  // no padding: models are told apart by its bytes
   std::array<int, 4> vertices{};
   double length = 0;      ///< of the edge at rest [m]
   double area = 0;        ///< of both triangles at rest [m²]
@@ -55,5 +55,8 @@ Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& we
 /// The angle of a hinge: 0 if flat, positive if vertices 2 and 3 turn away from the normal
 /// (x₁−x₀)×(x₂−x₀), −π … π.
 double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
+
+/// Largest singular value of F over all triangles: the largest stretch in any direction.
+double max_stretch(const Shell& shell, ConstVectors x);
 
 }  // namespace muslin

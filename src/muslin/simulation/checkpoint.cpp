@@ -54,6 +54,10 @@ std::uint64_t model_fingerprint(const Model& model) {
     hash = hash_bytes(body.name.data(), body.name.size(), hash);
     const std::array<std::int64_t, 3> shape = {body.first_vertex, body.vertex_count, body.springs.count};
     hash = hash_bytes(shape.data(), sizeof shape, hash);
+    if (!body.is_shell()) continue;
+    hash = hash_bytes(body.shell.triangles.data(), body.shell.triangles.size() * sizeof(Vec3i), hash);
+    hash = hash_bytes(body.shell.inverses.data(), body.shell.inverses.size() * sizeof(Mat2), hash);
+    hash = hash_bytes(body.shell.hinges.data(), body.shell.hinges.size() * sizeof(Hinge), hash);
   }
   for (const BodySettings& body : model.scene.bodies) {
     const Material& m = body.material;
@@ -66,6 +70,7 @@ std::uint64_t model_fingerprint(const Model& model) {
                                            m.stiffness_damping,
                                            static_cast<double>(body.boundary_springs)};
     hash = hash_bytes(numbers.data(), sizeof numbers, hash);
+    if (body.model == BodyModel::shell) hash = hash_bytes(&*m.shell, sizeof *m.shell, hash);
   }
   return hash;
 }

@@ -53,6 +53,7 @@ std::vector<std::uint64_t> term_keys(const Model& model) {
 }
 
 double max_stretch(const Body& body, ConstVectors x) {
+  if (body.is_shell()) return max_stretch(body.shell, x);
   const Springs& springs = body.springs;
   if (springs.count == 0) return 1;
   struct Largest {

@@ -25,7 +25,7 @@ struct Diagnostics {
   Vec3 momentum = Vec3::Zero();
   int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
   double residual = 0;                               ///< largest of this frame [m/s²]
-  double max_stretch = 1;                            ///< largest length / rest length of a spring
+  double max_stretch = 1;   ///< largest length / rest length of a spring, or of a shell in any direction
   double min_distance = 0;  ///< smallest gap between surfaces in contact [m]; infinity without contact
   double wall_ms = 0;       ///< time this frame took
 

@@ -1,0 +1,175 @@
+// Shells from a scene: counts, masses, threads, selections, probes, and what is wrong.
+#include <filesystem>
+#include <fstream>
+
+#include "support/sheet.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "muslin/io/mesh_file.hpp"
+#include "muslin/scene/describe.hpp"
+#include "muslin/scene/model.hpp"
+
+namespace muslin {
+namespace {
+
+using testing::HasSubstr;
+
+/// A folder with a sheet of 4 x 3 squares of 0.2 m, the same bent, and sheets that cannot be shells.
+class ShellModel : public testing::Test {
+ protected:
+  static std::filesystem::path folder() {
+    return std::filesystem::temp_directory_path() / ("muslin_shell_test_" + std::to_string(getpid()));
+  }
+  static void SetUpTestSuite() {
+    std::filesystem::create_directories(folder());
+    Mesh sheet = test::flat_sheet(4, 3, 0.8, 0.6);
+    sheet.groups.push_back({"hem", {0, 1, 2, 3}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}});
+    write_mesh(folder() / "sheet.obj", sheet);
+    write_mesh(folder() / "bent.obj", sheet, test::rolled(sheet.positions, 2));
+    write_mesh(folder() / "other.obj", test::flat_sheet(3, 4, 0.8, 0.6));
+    sheet.positions.emplace_back(0.1, 1, 0.1);
+    sheet.add_face(std::array{1, 6, 20});
+    write_mesh(folder() / "junction.obj", sheet);
+  }
+  static void TearDownTestSuite() { std::filesystem::remove_all(folder()); }
+
+  static Model build(const std::string& text) {
+    return build_model(parse_scene(text, folder() / "scene.toml"));
+  }
+  static std::string body(const std::string& mesh = "sheet.obj", const std::string& more = "") {
+    return "[[body]]\nname = 'cloth'\nmesh = '" + mesh +
+           "'\nmodel = 'shell'\nmaterial = { areal_density = 0.5, membrane_warp = 100, bending_warp = 1e-4 "
+           "}\n" +
+           more;
+  }
+  static std::string message(const std::string& text) {
+    try {
+      build(text);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      return error.what();
+    }
+    return "no error";
+  }
+};
+
+TEST_F(ShellModel, IsTheMeshItself) {
+  const Model model = build(body("sheet.obj", "rotate = [0, 90, 0]\ntranslate = [0, 2, 0]\nscale = 2\n"));
+  const Body& cloth = model.bodies[0];
+  EXPECT_TRUE(cloth.is_shell());
+  EXPECT_EQ(model.vertex_count(), 20u);
+  EXPECT_EQ(model.rest_positions, cloth.mesh.positions);
+  EXPECT_NEAR(cloth.statistics.mass, 0.5 * 1.6 * 1.2, 1e-12);
+  EXPECT_EQ(cloth.statistics.triangles, 24);
+  EXPECT_EQ(cloth.statistics.hinges, 29);
+  EXPECT_LT(cloth.statistics.stable_step, 0.1);
+  std::vector<Vec3> skin(20);
+  cloth.skin.apply(model.rest_positions, skin);
+  EXPECT_EQ(skin, model.rest_positions);
+  ASSERT_EQ(model.potentials.size(), 2u);
+  for (const PotentialTerm& term : model.potentials)
+    EXPECT_NEAR(term.potential->value(model.rest_positions), 0, 1e-20) << term.name;
+}
+
+TEST_F(ShellModel, DampingAddsTerms) {
+  const Model model = build(
+      "[[body]]\nmesh = 'sheet.obj'\nmodel = 'shell'\nmaterial = { areal_density = 0.5, membrane_warp = 100, "
+      "bending_warp = 1e-4, mass_damping = 1, stiffness_damping = 0.01 }\n");
+  ASSERT_EQ(model.loads.size(), 3u);
+  for (const LoadTerm& load : model.loads) EXPECT_EQ(load.role, EnergyRole::dissipation);
+}
+
+TEST_F(ShellModel, SelectsVerticesOfTheMesh) {
+  const Model model =
+      build(body("sheet.obj",
+                 "[[pin]]\nwhere = { group = 'hem' }\n[[pin]]\nwhere = { plane = { point = [0, 0, "
+                 "0], normal = [1, 0, 0] } }\n[[pin]]\nwhere = { nearest = [0.81, 0, 0.61] }\n"));
+  EXPECT_EQ(model.pins[0].vertices.size(), 10u);
+  EXPECT_THAT(model.pins[1].vertices, testing::ElementsAre(0, 5, 10, 15));
+  EXPECT_THAT(model.pins[2].vertices, testing::ElementsAre(19));
+  EXPECT_THAT(
+      message(body("sheet.obj", "[[pin]]\nwhere = { sphere = { center = [9, 0, 0], radius = 1 } }\n")),
+      HasSubstr("the nearest is [0.8, 0, 0]"));
+}
+
+TEST_F(ShellModel, ProbesLieOnTriangles) {
+  const Model model = build(body("sheet.obj", "[[probe]]\nat = [0.33, 0.05, 0.17]\n"));
+  Vec3 point;
+  model.probes[0].point.apply(model.rest_positions, Vectors(&point, 1));
+  EXPECT_LT((point - Vec3(0.33, 0, 0.17)).norm(), 1e-12);
+  EXPECT_THAT(model.warnings, testing::IsEmpty());
+  EXPECT_THAT(build(body("sheet.obj", "[[probe]]\nat = [0.33, 1, 0.17]\n")).warnings,
+              testing::ElementsAre(HasSubstr("lies 1 m from body")));
+}
+
+TEST_F(ShellModel, RestMeshIsWithoutStress) {
+  const Model flat = build(body("bent.obj", "rest_mesh = 'sheet.obj'\n"));
+  const Model bent = build(body("bent.obj"));
+  EXPECT_GT(flat.potentials[1].potential->value(flat.rest_positions), 1e-6);
+  EXPECT_NEAR(bent.potentials[1].potential->value(bent.rest_positions), 0, 1e-20);
+  EXPECT_THAT(message(body("bent.obj", "rest_mesh = 'other.obj'\n")),
+              testing::AllOf(HasSubstr("scene.toml:6:13"), HasSubstr("its polygons are not those of")));
+}
+
+TEST_F(ShellModel, WarpTurnsWithTheBody) {
+  const std::string anisotropic =
+      "[[body]]\nname = 'cloth'\nmesh = 'sheet.obj'\nmodel = 'shell'\nmaterial = { areal_density = 0.5, "
+      "membrane_warp = 100, membrane_weft = 10, bending_warp = 1e-4 }\n";
+  const auto stretched = [&](const std::string& more) {
+    const Model model = build(anisotropic + more);
+    std::vector<Vec3> x = model.rest_positions;
+    for (Vec3& p : x) p.x() *= 1.01;
+    return model.potentials[0].potential->value(x);
+  };
+  const double along_warp = stretched("warp = [1, 0, 0]\n"), along_weft = stretched("warp = [0, 0, 1]\n");
+  EXPECT_NEAR(along_warp / along_weft, 10, 1e-6);
+  EXPECT_NEAR(stretched("warp = [0, 0, 1]\nrotate = [0, 90, 0]\n") / along_warp, 1, 1e-9);
+  EXPECT_THAT(build(anisotropic).warnings, testing::ElementsAre(HasSubstr("its warp is taken along x")));
+}
+
+TEST_F(ShellModel, IsDescribed) {
+  const Model model = build(body());
+  const auto json = nlohmann::json::parse(describe_json(model))["bodies"][0];
+  EXPECT_EQ(json["model"], "shell");
+  EXPECT_EQ(json["vertices"], 20);
+  EXPECT_EQ(json["triangles"], 24);
+  EXPECT_EQ(json["hinges"], 29);
+  EXPECT_EQ(json["voxels"], 0);
+  EXPECT_NEAR(json["mass"], 0.24, 1e-12);
+  EXPECT_NEAR(json["area"], 0.48, 1e-12);
+  EXPECT_THAT(describe_text(model), HasSubstr("20 vertices, 24 triangles, 29 hinges"));
+}
+
+TEST_F(ShellModel, SaysWhatIsWrongAndWhere) {
+  EXPECT_THAT(
+      message(body("junction.obj")),
+      testing::AllOf(HasSubstr("scene.toml:3:8"), HasSubstr("junction.obj: the edge between vertices"),
+                     HasSubstr("shared by 3 triangles")));
+  EXPECT_THAT(message(body("sheet.obj", "voxel_width = 1\n")),
+              HasSubstr("scene.toml:6:15: `voxel_width` is a setting"));
+  const std::string lattice =
+      "[[body]]\nmesh = 'sheet.obj'\nvoxel_width = 1\nmaterial = 'cotton'\nwarp = [1, 0, 0]\n";
+  EXPECT_THAT(message(lattice), HasSubstr("`warp` is a setting of shells"));
+  const auto with = [&](const std::string& material) {
+    return message("[[body]]\nmesh = 'sheet.obj'\nmodel = 'shell'\nmaterial = " + material + "\n");
+  };
+  EXPECT_THAT(with("'oak'"),
+              testing::AllOf(HasSubstr("scene.toml:4:12: the material `oak` has no numbers for a shell"),
+                             HasSubstr("cotton")));
+  EXPECT_THAT(with("{ areal_density = 1, bending_warp = 1 }"), HasSubstr("has no `membrane_warp`"));
+  EXPECT_THAT(
+      with(
+          "{ areal_density = 1, membrane_warp = 1, bending_warp = 9, bending_weft = 1, bending_bias = 0.5 }"),
+      HasSubstr("give `bending_bias` at least 1"));
+  EXPECT_THAT(with("{ areal_density = 1, membrane_warp = 1, bending_warp = 1, poisson = 1 }"),
+              HasSubstr("`poisson`"));
+  EXPECT_THAT(with("{ base = 'steel' }"), HasSubstr("`steel` has no numbers for a shell"));
+  EXPECT_EQ(with("{ base = 'denim', bending_warp = 1e-4 }"), "no error");
+  EXPECT_THAT(message(body("sheet.obj", "warp = [0, 0, 0]\n")), HasSubstr("`warp` is no direction"));
+}
+
+}  // namespace
+}  // namespace muslin
