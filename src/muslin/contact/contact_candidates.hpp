@@ -52,6 +52,7 @@ class ContactCandidates {
   void update(ConstVectors begin, ConstVectors end, double margin);
 
   const ContactSurface& surface() const { return *surface_; }
+  std::shared_ptr<const ContactSurface> shared_surface() const { return surface_; }
   double contact_distance() const { return contact_distance_; }
   std::span<const ContactPair> pairs() const { return pairs_; }
   /// The boxes in which the pairs are complete, #P by 3 [m].

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/vector_code.hpp"
@@ -41,6 +42,7 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   scale_ = scale;
   sets_.clear();
   generals_.clear();
+  owned_.clear();
   identity_.resize(masses.size());
   for (std::size_t v = 0; v < masses.size(); ++v) identity_.data()[v] = static_cast<float>(masses[v]);
 }
@@ -66,6 +68,12 @@ Couplings& Linearization::couplings(const std::shared_ptr<const CouplingPattern>
 
 void Linearization::add_general(const Potential& potential, std::size_t first, ConstVectors x) {
   generals_.push_back({&potential, first, x});
+}
+
+void Linearization::add_general(std::shared_ptr<const Potential> potential, std::size_t first,
+                                ConstVectors x) {
+  owned_.push_back(std::move(potential));
+  add_general(*owned_.back(), first, x);
 }
 
 void Linearization::finish() {

@@ -33,6 +33,8 @@ class Linearization {
   void add_identity(std::size_t v, double value) { identity_.data()[v] += static_cast<float>(value); }
   /// A potential of vertices first, first + 1, … at x, kept by reference.
   void add_general(const Potential& potential, std::size_t first, ConstVectors x);
+  /// The same, owned until the next `reset`.
+  void add_general(std::shared_ptr<const Potential> potential, std::size_t first, ConstVectors x);
 
   /// Called when all potentials are in: computes the diagonal blocks.
   void finish();
@@ -63,6 +65,7 @@ class Linearization {
   std::vector<std::unique_ptr<Couplings>> storage_;  // reused from step to step
   std::vector<const Couplings*> sets_;               // of this x
   std::vector<General> generals_;
+  std::vector<std::shared_ptr<const Potential>> owned_;  // of generals_
   FloatVectors upper_, lower_;
   std::vector<Vec3> p_, y_;  // for products in double
   std::vector<Mat3> blocks_;

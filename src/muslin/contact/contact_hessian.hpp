@@ -1,0 +1,50 @@
+// The positive semidefinite Hessian of contact at one position, ready for many products:
+//
+//   H = Σ Aᵀ (a n nᵀ + b (I − n nᵀ)) A,   A u = Σ wᵢ (J u)ᵢ the relative motion at a contact.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "muslin/contact/surface_map.hpp"
+#include "muslin/potential/potential.hpp"
+
+namespace muslin {
+
+struct ContactRow {
+  std::array<int, 4> points{};  ///< −1: none
+  std::array<double, 4> weights{};
+  Vec3 normal = Vec3::Zero();
+  double normal_stiffness = 0;  ///< a ≥ 0 [N/m]
+  double tangential = 0;        ///< b ≥ 0 [N/m]
+};
+
+/// As a potential it is the quadratic ½ qᵀ H q.
+class ContactHessian : public Potential {
+ public:
+  ContactHessian(const SurfaceMap& map, const std::vector<ContactRow>& rows);
+
+  double value(ConstVectors q) const override;
+  void add_gradient(ConstVectors q, Vectors g) const override { add_hessian_product(q, q, g); }
+  void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
+  void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
+
+ private:
+  struct Entry {
+    int index;  ///< vertex of a row, or row of a vertex
+    double weight;
+  };
+  struct Stiffness {
+    Vec3 normal;
+    double a, b;
+    Vec3 times(const Vec3& r) const { return b * r + (a - b) * normal.dot(r) * normal; }
+  };
+  Vec3 relative(std::size_t row, ConstVectors p) const;
+
+  std::vector<Stiffness> rows_;
+  std::vector<int> row_offsets_, vertex_offsets_;
+  std::vector<Entry> by_row_, by_vertex_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,273 @@
+// Contact energy and friction: scalar laws, derivatives by finite differences, shares, and that what rests
+// stays.
+#include "muslin/contact/contact_potential.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "support/cloth_grid.hpp"
+#include "support/potential_battery.hpp"
+#include <gtest/gtest.h>
+
+#include "muslin/contact/contact_energy.hpp"
+#include "muslin/contact/contact_hessian.hpp"
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+namespace {
+
+TEST(ContactLaw, IsTwiceContinuousAndFallsToZero) {
+  const double range = 0.002, h = 1e-9;
+  for (const double gap : {0.0001, 0.0006, 0.0009999, 0.0010001, 0.0015, 0.00199}) {
+    const Law at = contact_law(gap, range);
+    EXPECT_NEAR((contact_law(gap + h, range).value - contact_law(gap - h, range).value) / (2 * h), at.slope,
+                1e-6 * range);
+    EXPECT_NEAR((contact_law(gap + h, range).slope - contact_law(gap - h, range).slope) / (2 * h),
+                at.curvature, 1e-4 * at.curvature);
+  }
+  const Law below = contact_law(0.001 - 1e-12, range), above = contact_law(0.001 + 1e-12, range);
+  EXPECT_NEAR(below.value, above.value, 1e-14);
+  EXPECT_NEAR(below.slope, above.slope, 1e-11);
+  EXPECT_NEAR(below.curvature, above.curvature, 1e-6);
+  EXPECT_EQ(contact_law(range, range).value, 0);
+  EXPECT_EQ(contact_law(0, range).value, std::numeric_limits<double>::infinity());
+}
+
+TEST(FrictionLaw, ReachesFullForceAtTheStickLength) {
+  const double stick = 1e-5, h = 1e-11;
+  for (const double slip : {1e-7, 4e-6, 9.9e-6, 1.1e-5, 3e-4}) {
+    const Law at = friction_law(slip, stick);
+    EXPECT_NEAR((friction_law(slip + h, stick).value - friction_law(slip - h, stick).value) / (2 * h),
+                at.slope, 1e-4);
+    EXPECT_DOUBLE_EQ(at.curvature * slip, at.slope);
+  }
+  EXPECT_DOUBLE_EQ(friction_law(stick, stick).slope, 1);
+  EXPECT_EQ(friction_law(0, stick).value, 0);
+  EXPECT_DOUBLE_EQ(friction_law(0, stick).curvature, 2 / stick);
+}
+
+/// Two crumpled sheets in contact on a plane, the upper one carried by eight vertices if asked.
+struct Scene {
+  std::shared_ptr<const ContactSurface> surface;
+  std::shared_ptr<const SurfaceMap> map;
+  std::vector<Vec3> q, start;
+  double range = 0.02;
+
+  explicit Scene(bool carried = false) {
+    const test::ClothGrid sheet(5, 5, 0.1);
+    std::mt19937_64 random(2);
+    std::uniform_real_distribution<double> noise(-0.002, 0.002);
+    std::vector<Vec3i> triangles = sheet.triangles;
+    std::vector<int> bodies(25, 0), offsets = {0};
+    std::vector<SurfaceMap::Entry> entries;
+    for (const Vec3& p : sheet.positions) {
+      entries.push_back({static_cast<int>(q.size()), 1});
+      offsets.push_back(static_cast<int>(entries.size()));
+      q.push_back(p + Vec3(noise(random), 0.012 + noise(random), noise(random)));
+    }
+    for (const Vec3i& t : sheet.triangles) triangles.push_back(t.array() + 25);
+    bodies.resize(50, 1);
+    const int first = static_cast<int>(q.size());
+    if (carried) {
+      for (int corner = 0; corner < 8; ++corner)
+        q.push_back(Vec3(0.03 + 0.45 * (corner & 1), 0.4 * (corner >> 1 & 1), 0.02 + 0.44 * (corner >> 2)));
+    }
+    for (const Vec3& p : sheet.positions) {
+      if (carried) {
+        const double u = 2 * p.x(), v = 0.065 + noise(random), w = 2 * p.z();
+        for (int c = 0; c < 8; ++c)
+          entries.push_back(
+              {first + c, (c & 1 ? u : 1 - u) * (c >> 1 & 1 ? v : 1 - v) * (c >> 2 ? w : 1 - w)});
+      } else {
+        entries.push_back({static_cast<int>(q.size()), 1});
+        q.push_back(p + Vec3(0.033 + noise(random), 0.025 + noise(random), 0.021 + noise(random)));
+      }
+      offsets.push_back(static_cast<int>(entries.size()));
+    }
+    // The floor's point.
+    entries.push_back({static_cast<int>(q.size()), 1});
+    offsets.push_back(static_cast<int>(entries.size()));
+    q.push_back(Vec3::Zero());
+    bodies.push_back(2);
+    surface = std::make_shared<ContactSurface>(
+        triangles, bodies,
+        std::vector<ContactBody>{{0.001, true, false}, {0.001, true, false}, {0, false, true}},
+        std::vector<ContactPlane>{{50, Vec3(0, 1, 0)}});
+    map = carried ? std::make_shared<SurfaceMap>(q.size(), offsets, entries)
+                  : std::make_shared<SurfaceMap>(SurfaceMap::identity(q.size()));
+    start = test::sum(q, 1, test::random_vectors(q.size(), 3e-5, 7));
+  }
+
+  ContactPotential potential(double friction, double stick = 2e-5) const {
+    std::vector<Vec3> x(surface->point_count());
+    map->apply(q, x);
+    ContactCandidates candidates(surface, x, range);
+    // The sheets are flat at rest, but x is as good: bodies are a twentieth of an edge apart.
+    candidates.update(x, x, 0.002);
+    return ContactPotential(candidates, map, q, {150, friction, stick}, start);
+  }
+};
+
+class ContactPotentialOf : public ::testing::TestWithParam<bool> {};
+
+TEST_P(ContactPotentialOf, HasTheGradientOfItsValue) {
+  const Scene scene(GetParam());
+  for (const double friction : {0.0, 0.5}) {
+    const ContactPotential w = scene.potential(friction);
+    EXPECT_GT(w.pair_count(), 40U);
+    EXPECT_GT(w.value(scene.q), 0);
+    const std::vector<Vec3> near = test::sum(scene.q, 1, test::random_vectors(scene.q.size(), 1e-5, 3));
+    for (const std::vector<Vec3>& q : {scene.q, near}) {
+      const std::vector<Vec3> g = test::gradient(w, q);
+      for (std::uint32_t seed = 1; seed < 8; ++seed) {
+        const std::vector<Vec3> d = test::random_vectors(q.size(), 1, seed);
+        const double h = 1e-8;
+        const double slope = (w.value(test::sum(q, h, d)) - w.value(test::sum(q, -h, d))) / (2 * h);
+        EXPECT_NEAR(slope, test::inner(g, d), 2e-6 * test::norm(g) * test::norm(d));
+      }
+    }
+  }
+}
+
+TEST_P(ContactPotentialOf, HasASymmetricPositiveHessianWithItsDiagonal) {
+  const Scene scene(GetParam());
+  const ContactPotential w = scene.potential(0.5);
+  test::expect_hessian_symmetric(w, scene.q);
+  test::expect_diagonal_blocks_positive_semidefinite(w, scene.q);
+  test::expect_adds(w, scene.q);
+  test::expect_same_bits_for_any_thread_count(w, scene.q);
+  std::vector<Mat3> blocks(scene.q.size(), Mat3::Zero());
+  w.add_diagonal_blocks(scene.q, blocks);
+  for (std::size_t v = 0; v < scene.q.size(); ++v) {
+    for (int k = 0; k < 3; ++k) {
+      std::vector<Vec3> unit(scene.q.size(), Vec3::Zero());
+      unit[v][k] = 1;
+      const std::vector<Vec3> column = test::hessian_product(w, scene.q, unit);
+      EXPECT_LT((column[v] - blocks[v].col(k)).norm(), 1e-9 * (1 + blocks[v].norm()));
+      EXPECT_GE(test::inner(unit, column), 0);
+    }
+  }
+}
+
+TEST_P(ContactPotentialOf, PushesNeitherAsAWholeNorTurns) {
+  // Action and reaction: between all bodies, the floor too, forces add to nothing.
+  const Scene scene(GetParam());
+  const std::vector<Vec3> g = test::gradient(scene.potential(0.5), scene.q);
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& f : g) sum += f;
+  EXPECT_LT(sum.norm(), 1e-12 * test::norm(g) * static_cast<double>(g.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Maps, ContactPotentialOf, ::testing::Bool(),
+                         [](const auto& carried) { return carried.param ? "Carried" : "Identity"; });
+
+TEST(ContactPotential, LinearizesToItsHessian) {
+  const Scene scene;
+  const ContactPotential w = scene.potential(0.3);
+  const std::vector<double> masses(scene.q.size(), 0);
+  const std::vector<std::uint8_t> fixed(scene.q.size(), 0);
+  Linearization linearization;
+  linearization.reset(masses, fixed, 1);
+  w.linearize(scene.q, linearization, 0);
+  linearization.finish();
+  const std::vector<Vec3> p = test::random_vectors(scene.q.size(), 1, 4);
+  const std::vector<Vec3> expected = test::hessian_product(w, scene.q, p);
+  FloatVectors in, out;
+  in.resize(p.size());
+  out.resize(p.size());
+  for (std::size_t v = 0; v < p.size(); ++v) {
+    in.data().x[v] = static_cast<float>(p[v].x());
+    in.data().y[v] = static_cast<float>(p[v].y());
+    in.data().z[v] = static_cast<float>(p[v].z());
+  }
+  linearization.product(in, out);
+  for (std::size_t v = 0; v < p.size(); ++v)
+    EXPECT_LT((Vec3(out.data().x[v], out.data().y[v], out.data().z[v]) - expected[v]).norm(),
+              1e-4 * (1 + test::norm(expected)));
+}
+
+TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
+  // A fixed sheet; a lone point pressed on it feels the same force over faces, edges and corners.
+  const test::ClothGrid sheet(5, 5, 0.1);
+  std::vector<Vec3i> triangles = sheet.triangles;
+  triangles.emplace_back(25, 25, 25);
+  std::vector<int> bodies(25, 0);
+  bodies.push_back(1);
+  const auto surface = std::make_shared<ContactSurface>(triangles, bodies, std::vector<ContactBody>{{}, {}});
+  const auto map = std::make_shared<SurfaceMap>(SurfaceMap::identity(26));
+  for (const Vec3& over :
+       {Vec3(0.23, 0.001, 0.22), Vec3(0.2, 0.001, 0.25), Vec3(0.2, 0.001, 0.2), Vec3(0.25, 0.001, 0.25)}) {
+    std::vector<Vec3> q = sheet.positions;
+    q.push_back(over);
+    ContactCandidates candidates(surface, q, 0.002);
+    candidates.update(q, q, 0.001);
+    const ContactPotential w(candidates, map, q, {1000, 0, 1e-5}, q);
+    EXPECT_NEAR(test::gradient(w, q)[25].y(), -1, 1e-9) << over.transpose();
+  }
+}
+
+TEST(ContactPotential, MaxStepKeepsEnergyFinite) {
+  const Scene scene;
+  const ContactPotential w = scene.potential(0);
+  std::vector<Vec3> d(scene.q.size(), Vec3::Zero());
+  for (std::size_t v = 25; v < 50; ++v) d[v] = Vec3(0, -0.1, 0);
+  const double t = w.max_step(scene.q, d);
+  EXPECT_GT(t, 0);
+  EXPECT_LT(t, 1);
+  EXPECT_TRUE(std::isfinite(w.value(test::sum(scene.q, t, d))));
+  for (Vec3& v : d) v = Vec3(1, 2, 3);
+  EXPECT_EQ(w.max_step(scene.q, d), std::numeric_limits<double>::infinity());
+}
+
+/// A particle of 1 kg on a plane, minimising contact, gravity along and across it, and inertia, by Newton's
+/// method with lagged friction; returns how far it has slid after 200 and 400 steps of 1/240 s.
+std::array<double, 2> slide(double friction, double slope) {
+  double halfway = 0;
+  const auto surface = std::make_shared<ContactSurface>(std::vector<Vec3i>{{0, 0, 0}}, std::vector<int>{0, 1},
+                                                        std::vector<ContactBody>{{}, {0, false, true}},
+                                                        std::vector<ContactPlane>{{1, Vec3(0, 1, 0)}});
+  const auto map = std::make_shared<SurfaceMap>(SurfaceMap::identity(2));
+  const double range = 0.002, dt = 1.0 / 240, g = 9.81;
+  const Vec3 gravity = g * Vec3(std::sin(slope), -std::cos(slope), 0);
+  std::vector<Vec3> q = {Vec3(0, 0.0015, 0), Vec3::Zero()};
+  ContactCandidates candidates(surface, q, range);
+  std::vector<PairSlip> slips;
+  Vec3 velocity = Vec3::Zero();
+  for (int step = 0; step < 400; ++step) {
+    const std::vector<Vec3> start = q;
+    const Vec3 predicted = q[0] + dt * velocity + dt * dt * gravity;
+    candidates.update(q, q, 0.01);
+    for (int iteration = 0; iteration < 12; ++iteration) {
+      const ContactPotential w(candidates, map, q, {30000, friction, 4e-6}, start, slips);
+      std::vector<Mat3> blocks(2, Mat3::Zero());
+      w.add_diagonal_blocks(q, blocks);
+      const Vec3 residual = (q[0] - predicted) / (dt * dt) + test::gradient(w, q)[0];
+      const Mat3 hessian = Mat3::Identity() / (dt * dt) + blocks[0];
+      Vec3 move = -hessian.inverse() * residual;
+      move.y() = std::max(move.y(), -0.9 * q[0].y());
+      q[0] += move;
+      if (iteration == 11) slips = w.slips(q);
+    }
+    velocity = (q[0] - start[0]) / dt;
+    if (step == 199) halfway = q[0].x();
+  }
+  return {halfway, q[0].x()};
+}
+
+TEST(Friction, HoldsBelowItsAngleAndSlidesAsCoulombSaysAbove) {
+  const double slope = std::atan(0.3), time = 400.0 / 240;
+  const auto [landed, later] = slide(0.33, slope);  // at 90 % of the limit
+  EXPECT_LT(landed, 1e-4);
+  EXPECT_LT(std::fabs(later - landed), 1e-9);  // no creep
+  const double expected = 0.5 * 9.81 * (std::sin(slope) - 0.1 * std::cos(slope)) * time * time;
+  EXPECT_NEAR(slide(0.1, slope)[1], expected, 0.01 * expected);
+}
+
+TEST(ContactPotential, RefusesNonsense) {
+  const Scene scene;
+  EXPECT_THROW(scene.potential(-1), Error);
+  EXPECT_THROW(scene.potential(1, 0), Error);
+}
+
+}  // namespace
+}  // namespace muslin
