@@ -73,13 +73,15 @@ struct PairSearch::Tree {
     std::int8_t points = 0, edges = 0;  ///< how many it owns
     bool is_point = false;              ///< (a, a, a)
     int first_point = 0, first_edge = 0;
+    Vec3i corners = Vec3i::Constant(-1);
   };
 
   std::shared_ptr<const ContactSurface> surface;
   bool ask_bodies = false;
   std::vector<Node> nodes;
   std::vector<Slot> slots;
-  std::vector<int> points, edges;  ///< owned ones, in the order of the slots
+  std::vector<int> points, edges;          ///< owned ones, in the order of the slots
+  std::vector<ContactSurface::Edge> ends;  ///< of the owned edges
   std::vector<Task> tasks;
 
   std::vector<FloatBox> node_boxes, slot_boxes, owned_point_boxes, owned_edge_boxes, point_boxes;
@@ -124,6 +126,7 @@ struct PairSearch::Tree {
           const Vec3i& c = surface->triangles()[static_cast<std::size_t>(slot.triangle)];
           slot.body = surface->body_of(c[0]);
           slot.is_point = c[0] == c[1] && c[1] == c[2];
+          slot.corners = c;
         }
         slots.push_back(slot);
       }
@@ -158,6 +161,8 @@ struct PairSearch::Tree {
         if ((own.vertices >> i & 1) != 0) points.push_back(surface->triangles()[t][i]);
         if ((own.edges >> i & 1) != 0) edges.push_back(surface->triangle_edges()[t][i]);
       }
+      for (std::size_t e = static_cast<std::size_t>(slot.first_edge); e < edges.size(); ++e)
+        ends.push_back(surface->edges()[static_cast<std::size_t>(edges[e])]);
       slot.points = static_cast<std::int8_t>(static_cast<int>(points.size()) - slot.first_point);
       slot.edges = static_cast<std::int8_t>(static_cast<int>(edges.size()) - slot.first_edge);
     }
@@ -266,9 +271,8 @@ struct PairSearch::Tree {
     }
   }
 
-  bool incident(int p, int triangle) const {
-    const Vec3i& c = surface->triangles()[static_cast<std::size_t>(triangle)];
-    return c[0] == p || c[1] == p || c[2] == p;
+  static bool is_corner(int p, const Slot& slot) {
+    return (slot.corners[0] == p) | (slot.corners[1] == p) | (slot.corners[2] == p);
   }
 
   /// Owned points of slot a against the triangle of slot b.
@@ -279,7 +283,7 @@ struct PairSearch::Tree {
     if (other.is_point && !a.is_point) return;
     for (int i = a.first_point; i < a.first_point + a.points; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (overlap(owned_point_boxes[k], box) && !incident(points[k], other.triangle))
+      if (overlap(owned_point_boxes[k], box) && !is_corner(points[k], other))
         found.vertex_triangle.push_back({points[k], other.triangle});
     }
   }
@@ -291,12 +295,12 @@ struct PairSearch::Tree {
     points_against_triangle(b, i, found);
     for (int p = a.first_edge; p < a.first_edge + a.edges; ++p) {
       const FloatBox& box = owned_edge_boxes[static_cast<std::size_t>(p)];
+      const ContactSurface::Edge& e = ends[static_cast<std::size_t>(p)];
       for (int q = b.first_edge; q < b.first_edge + b.edges; ++q) {
-        if (!overlap(box, owned_edge_boxes[static_cast<std::size_t>(q)])) continue;
+        const ContactSurface::Edge& f = ends[static_cast<std::size_t>(q)];
+        const bool share = (e[0] == f[0]) | (e[0] == f[1]) | (e[1] == f[0]) | (e[1] == f[1]);
+        if (share | !overlap(box, owned_edge_boxes[static_cast<std::size_t>(q)])) continue;
         const int first = edges[static_cast<std::size_t>(p)], second = edges[static_cast<std::size_t>(q)];
-        const ContactSurface::Edge &e = surface->edges()[static_cast<std::size_t>(first)],
-                                   &f = surface->edges()[static_cast<std::size_t>(second)];
-        if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) continue;
         found.edge_edge.push_back({std::min(first, second), std::max(first, second)});
       }
     }
