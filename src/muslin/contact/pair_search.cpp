@@ -4,9 +4,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <initializer_list>
 #include <numeric>
 #include <utility>
 
+#include "muslin/contact/feature_lanes.hpp"
 #include "muslin/contact/float_box.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
@@ -18,34 +20,89 @@ namespace {
 constexpr int leaf_size = 8;
 constexpr std::size_t grain = 4096;
 
+/// Numbers of two leaves.
 struct LeafPair {
-  int a, b;  ///< first slots
+  int a, b;
 };
 
-/// The boxes of eight triangles, one array for each side.
-struct LeafBoxes {
-  alignas(32) float low[3][leaf_size], high[3][leaf_size];
+/// What eight triangles own, as ranges of groups of eight.
+struct Leaf {
+  FloatBox box;
+  int first_points = 0, last_points = 0;
+  int first_edges = 0, last_edges = 0;
 };
 
-/// bits[i] bit j: triangle i of leaf a overlaps triangle j of leaf b.
-MUSLIN_INLINE void compare_leaves(const LeafBoxes& a, const LeafBoxes& b, std::uint8_t* bits) {
-  for (int i = 0; i < leaf_size; ++i) {
-    std::uint32_t row = 0;
-    for (int j = 0; j < leaf_size; ++j) {
-      const bool hit = (a.low[0][i] <= b.high[0][j]) & (b.low[0][j] <= a.high[0][i]) &
-                       (a.low[1][i] <= b.high[1][j]) & (b.low[1][j] <= a.high[1][i]) &
-                       (a.low[2][i] <= b.high[2][j]) & (b.low[2][j] <= a.high[2][i]);
-      row |= static_cast<std::uint32_t>(hit) << j;
+/// Pairs found in vector code: grown before each group, cut to size at the end.
+template <class Pair>
+struct Output {
+  std::vector<Pair>& pairs;
+  std::size_t count = 0;
+
+  void reserve() {
+    if (pairs.size() < count + lane_count * lane_count) pairs.resize(2 * (count + lane_count * lane_count));
+  }
+  MUSLIN_INLINE void add(int first, int second) { pairs[count++] = {first, second}; }
+};
+
+/// The groups of all leaves; triangles of leaf l are group l.
+struct Groups {
+  std::vector<Leaf> leaves;
+  std::vector<FeatureLanes> points, edges, triangles;
+};
+
+MUSLIN_INLINE void points_against_triangles(const Groups& groups, const Leaf& a, int leaf_b,
+                                            Output<VertexTriangle>& out) {
+  const FeatureLanes& triangles = groups.triangles[static_cast<std::size_t>(leaf_b)];
+  const FloatBox& box = groups.leaves[static_cast<std::size_t>(leaf_b)].box;
+  for (int g = a.first_points; g < a.last_points; ++g) {
+    const FeatureLanes& points = groups.points[static_cast<std::size_t>(g)];
+    out.reserve();
+    for (LaneBits rows = lanes_in_box(points, box); rows != 0; rows &= rows - 1) {
+      const int i = first_lane(rows);
+      for (LaneBits hits = lanes_near<1, 3>(points, i, triangles); hits != 0; hits &= hits - 1)
+        out.add(points.id[i], triangles.id[first_lane(hits)]);
     }
-    bits[i] = static_cast<std::uint8_t>(row);
+  }
+}
+
+MUSLIN_INLINE void edges_against_edges(const Groups& groups, const LeafPair& pair, Output<EdgeEdge>& out) {
+  const Leaf &a = groups.leaves[static_cast<std::size_t>(pair.a)],
+             &b = groups.leaves[static_cast<std::size_t>(pair.b)];
+  for (int g = a.first_edges; g < a.last_edges; ++g) {
+    const FeatureLanes& first = groups.edges[static_cast<std::size_t>(g)];
+    const LaneBits rows = lanes_in_box(first, b.box);
+    if (rows == 0) continue;
+    // Within a leaf each pair once: later groups, and later lanes of the same group.
+    for (int h = pair.a == pair.b ? g : b.first_edges; h < b.last_edges; ++h) {
+      const FeatureLanes& second = groups.edges[static_cast<std::size_t>(h)];
+      out.reserve();
+      for (LaneBits left = rows; left != 0; left &= left - 1) {
+        const int i = first_lane(left);
+        LaneBits hits = lanes_near<2, 2>(first, i, second);
+        if (g == h) hits &= lanes_after(i);
+        for (; hits != 0; hits &= hits - 1) {
+          const int e = first.id[i], f = second.id[first_lane(hits)];
+          out.add(e < f ? e : f, e < f ? f : e);
+        }
+      }
+    }
   }
 }
 
 MUSLIN_VECTOR_CODE
-void compare_all_leaves(const LeafBoxes* leaves, const LeafPair* pairs, std::size_t count,
-                        std::uint8_t* bits) {
-  for (std::size_t k = 0; k < count; ++k)
-    compare_leaves(leaves[pairs[k].a], leaves[pairs[k].b], bits + leaf_size * k);
+void compare_leaves(const Groups& groups, const std::vector<LeafPair>& pairs, FeaturePairs& found) {
+  Output<VertexTriangle> vertex_triangle{found.vertex_triangle};
+  Output<EdgeEdge> edge_edge{found.edge_edge};
+  for (const LeafPair& pair : pairs) {
+    points_against_triangles(groups, groups.leaves[static_cast<std::size_t>(pair.a)], pair.b,
+                             vertex_triangle);
+    if (pair.a != pair.b)
+      points_against_triangles(groups, groups.leaves[static_cast<std::size_t>(pair.b)], pair.a,
+                               vertex_triangle);
+    edges_against_edges(groups, pair, edge_edge);
+  }
+  found.vertex_triangle.resize(vertex_triangle.count);
+  found.edge_edge.resize(edge_edge.count);
 }
 
 }  // namespace
@@ -63,34 +120,21 @@ struct PairSearch::Tree {
     NodePair root{};
     std::vector<NodePair> stack;
     std::vector<LeafPair> leaves;
-    std::vector<std::uint8_t> bits;
     FeaturePairs found;
   };
-  /// A triangle in the order of the tree, with what it owns.
-  struct Slot {
-    int triangle = -1;
-    int body = -1;
-    std::int8_t points = 0, edges = 0;  ///< how many it owns
-    bool is_point = false;              ///< (a, a, a)
-    int first_point = 0, first_edge = 0;
-    Vec3i corners = Vec3i::Constant(-1);
-  };
-
   std::shared_ptr<const ContactSurface> surface;
-  bool ask_bodies = false;
+  bool ask_bodies = false, ask_points = false;  ///< whether pairs have to be left out afterwards
   std::vector<Node> nodes;
-  std::vector<Slot> slots;
-  std::vector<int> points, edges;          ///< owned ones, in the order of the slots
-  std::vector<ContactSurface::Edge> ends;  ///< of the owned edges
+  std::vector<int> order;  ///< triangles by leaf
+  Groups groups;
   std::vector<Task> tasks;
-
-  std::vector<FloatBox> node_boxes, slot_boxes, owned_point_boxes, owned_edge_boxes, point_boxes;
-  std::vector<LeafBoxes> leaf_boxes;
+  std::vector<FloatBox> node_boxes, point_boxes;
+  std::vector<std::uint8_t> lone;  ///< points that are a triangle (a, a, a)
 
   Tree(std::shared_ptr<const ContactSurface> surface_, ConstVectors positions)
       : surface(std::move(surface_)) {
     const std::size_t count = surface->triangles().size();
-    std::vector<int> order(count);
+    order.resize(count);
     std::iota(order.begin(), order.end(), 0);
     std::vector<Vec3> centres(count);
     for (std::size_t t = 0; t < count; ++t) {
@@ -102,34 +146,25 @@ struct PairSearch::Tree {
       }
       centres[t] = (low + high) / 2;
     }
-    if (count > 0) build(centres, order, 0, static_cast<int>(count));
-    number_features();
+    if (count > 0) build(centres, 0, static_cast<int>(count));
     for (const ContactBody& body : surface->bodies()) ask_bodies |= body.fixed || !body.self_contact;
+    lone.assign(surface->point_count(), 0);
+    for (const Vec3i& t : surface->triangles()) {
+      if (t[0] != t[1] || t[1] != t[2]) continue;
+      lone[static_cast<std::size_t>(t[0])] = 1;
+      ask_points = true;
+    }
     node_boxes.resize(nodes.size());
-    slot_boxes.resize(slots.size());
-    leaf_boxes.resize(slots.size() / leaf_size);
-    owned_point_boxes.resize(points.size());
-    owned_edge_boxes.resize(edges.size());
     point_boxes.resize(surface->point_count());
     make_tasks();
   }
 
-  int build(const std::vector<Vec3>& centres, std::vector<int>& order, int begin, int end) {
+  int build(const std::vector<Vec3>& centres, int begin, int end) {
     const int index = static_cast<int>(nodes.size());
     nodes.emplace_back();
     if (end - begin <= leaf_size) {
-      nodes.back().leaf = static_cast<int>(slots.size()) / leaf_size;
-      for (int i = 0; i < leaf_size; ++i) {
-        Slot slot;
-        if (begin + i < end) {
-          slot.triangle = order[static_cast<std::size_t>(begin + i)];
-          const Vec3i& c = surface->triangles()[static_cast<std::size_t>(slot.triangle)];
-          slot.body = surface->body_of(c[0]);
-          slot.is_point = c[0] == c[1] && c[1] == c[2];
-          slot.corners = c;
-        }
-        slots.push_back(slot);
-      }
+      nodes.back().leaf = static_cast<int>(groups.leaves.size());
+      add_leaf(begin, end);
       return index;
     }
     Box box;
@@ -140,32 +175,50 @@ struct PairSearch::Tree {
     const int leaves = (end - begin + leaf_size - 1) / leaf_size;
     const int middle = begin + (leaves + 1) / 2 * leaf_size;
     std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int a, int b) {
-      const double p = centres[static_cast<std::size_t>(a)][axis],
-                   q = centres[static_cast<std::size_t>(b)][axis];
+      const double p = centres[static_cast<std::size_t>(a)][axis];
+      const double q = centres[static_cast<std::size_t>(b)][axis];
       return p != q ? p < q : a < b;
     });
-    build(centres, order, begin, middle);
-    const int right = build(centres, order, middle, end);
+    build(centres, begin, middle);
+    const int right = build(centres, middle, end);
     nodes[static_cast<std::size_t>(index)].right = right;
     return index;
   }
 
-  void number_features() {
-    for (Slot& slot : slots) {
-      slot.first_point = static_cast<int>(points.size());
-      slot.first_edge = static_cast<int>(edges.size());
-      if (slot.triangle < 0) continue;
-      const auto t = static_cast<std::size_t>(slot.triangle);
+  /// Puts a feature into the last group from `first` on, or a new one.
+  static void append(std::vector<FeatureLanes>& all, int first, int& used, int id,
+                     std::initializer_list<int> points) {
+    if (used % lane_count == 0) all.emplace_back();
+    FeatureLanes& lanes = all[static_cast<std::size_t>(first + used / lane_count)];
+    const int lane = used++ % lane_count;
+    lanes.id[lane] = id;
+    int k = 0;
+    for (const int p : points) lanes.points[k++][lane] = p;
+  }
+
+  void add_leaf(int begin, int end) {
+    Leaf leaf;
+    leaf.first_points = static_cast<int>(groups.points.size());
+    leaf.first_edges = static_cast<int>(groups.edges.size());
+    const int first_triangles = static_cast<int>(groups.triangles.size());
+    int points = 0, edges = 0, triangles = 0;
+    for (int i = begin; i < end; ++i) {
+      const int triangle = order[static_cast<std::size_t>(i)];
+      const auto t = static_cast<std::size_t>(triangle);
+      const Vec3i& c = surface->triangles()[t];
+      append(groups.triangles, first_triangles, triangles, triangle, {c[0], c[1], c[2]});
       const ContactSurface::Ownership own = surface->ownership()[t];
-      for (int i = 0; i < 3; ++i) {
-        if ((own.vertices >> i & 1) != 0) points.push_back(surface->triangles()[t][i]);
-        if ((own.edges >> i & 1) != 0) edges.push_back(surface->triangle_edges()[t][i]);
+      for (int k = 0; k < 3; ++k) {
+        if ((own.vertices >> k & 1) != 0) append(groups.points, leaf.first_points, points, c[k], {c[k]});
+        if ((own.edges >> k & 1) == 0) continue;
+        const int e = surface->triangle_edges()[t][k];
+        const ContactSurface::Edge& ends = surface->edges()[static_cast<std::size_t>(e)];
+        append(groups.edges, leaf.first_edges, edges, e, {ends[0], ends[1]});
       }
-      for (std::size_t e = static_cast<std::size_t>(slot.first_edge); e < edges.size(); ++e)
-        ends.push_back(surface->edges()[static_cast<std::size_t>(edges[e])]);
-      slot.points = static_cast<std::int8_t>(static_cast<int>(points.size()) - slot.first_point);
-      slot.edges = static_cast<std::int8_t>(static_cast<int>(edges.size()) - slot.first_edge);
     }
+    leaf.last_points = static_cast<int>(groups.points.size());
+    leaf.last_edges = static_cast<int>(groups.edges.size());
+    groups.leaves.push_back(leaf);
   }
 
   bool is_leaf(int node) const { return nodes[static_cast<std::size_t>(node)].right < 0; }
@@ -226,43 +279,33 @@ struct PairSearch::Tree {
         box.high = Float4{rounded_up(high[0] + pad), rounded_up(high[1] + pad), rounded_up(high[2] + pad), 0};
       }
     });
-    const auto point_box = [&](int p) -> const FloatBox& { return point_boxes[static_cast<std::size_t>(p)]; };
-    parallel_for(leaf_boxes.size(), grain / leaf_size, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t s = begin * leaf_size; s < end * leaf_size; ++s) {
-        const Slot& slot = slots[s];
-        FloatBox box;
-        if (slot.triangle >= 0) {
-          const Vec3i& c = surface->triangles()[static_cast<std::size_t>(slot.triangle)];
-          box = point_box(c[0]);
-          box.extend(point_box(c[1]));
-          box.extend(point_box(c[2]));
+    const auto fit_lanes = [&](std::vector<FeatureLanes>& all, int points_each) {
+      parallel_for(all.size(), grain / lane_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) {
+          for (int lane = 0; lane < lane_count && all[g].id[lane] >= 0; ++lane) {
+            FloatBox box = point_boxes[static_cast<std::size_t>(all[g].points[0][lane])];
+            for (int k = 1; k < points_each; ++k)
+              box.extend(point_boxes[static_cast<std::size_t>(all[g].points[k][lane])]);
+            all[g].set_box(lane, box);
+          }
         }
-        slot_boxes[s] = box;
-        LeafBoxes& leaf = leaf_boxes[s / leaf_size];
-        for (std::size_t k = 0; k < 3; ++k) {
-          leaf.low[k][s % leaf_size] = box.low[k];
-          leaf.high[k][s % leaf_size] = box.high[k];
-        }
-      }
-    });
-    parallel_for(points.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) owned_point_boxes[i] = point_box(points[i]);
-    });
-    parallel_for(edges.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const ContactSurface::Edge& e = surface->edges()[static_cast<std::size_t>(edges[i])];
-        FloatBox box = point_box(e[0]);
-        box.extend(point_box(e[1]));
-        owned_edge_boxes[i] = box;
-      }
-    });
+      });
+    };
+    fit_lanes(groups.points, 1);
+    fit_lanes(groups.edges, 2);
+    fit_lanes(groups.triangles, 3);
     // Children come after their parents.
     for (std::size_t n = nodes.size(); n-- > 0;) {
       const Node& node = nodes[n];
       FloatBox box;
       if (node.right < 0) {
-        const std::size_t first = static_cast<std::size_t>(node.leaf) * leaf_size;
-        for (std::size_t s = first; s < first + leaf_size; ++s) box.extend(slot_boxes[s]);
+        const auto l = static_cast<std::size_t>(node.leaf);
+        const FeatureLanes& lanes = groups.triangles[l];
+        for (int i = 0; i < lane_count; ++i) {
+          box.extend({Float4{lanes.low[0][i], lanes.low[1][i], lanes.low[2][i], 0},
+                      Float4{lanes.high[0][i], lanes.high[1][i], lanes.high[2][i], 0}});
+        }
+        groups.leaves[l].box = box;
       } else {
         box = node_boxes[n + 1];
         box.extend(node_boxes[static_cast<std::size_t>(node.right)]);
@@ -271,44 +314,28 @@ struct PairSearch::Tree {
     }
   }
 
-  static bool is_corner(int p, const Slot& slot) {
-    return (slot.corners[0] == p) | (slot.corners[1] == p) | (slot.corners[2] == p);
+  /// What the boxes do not know: bodies that may not touch, and that a vertex meets a lone point as that
+  /// point meets the vertex's triangles.
+  bool unwanted(int p, int q) const {
+    return ask_bodies && !surface->may_touch(surface->body_of(p), surface->body_of(q));
+  }
+  bool is_lone(int p) const {
+    return lone[static_cast<std::size_t>(p)] != 0 && surface->triangles_at_point(p) == 1;
   }
 
-  /// Owned points of slot a against the triangle of slot b.
-  void points_against_triangle(const Slot& a, std::size_t b, FeaturePairs& found) const {
-    const FloatBox& box = slot_boxes[b];
-    const Slot& other = slots[b];
-    // A vertex meets a lone point as that point meets the vertex's triangles.
-    if (other.is_point && !a.is_point) return;
-    for (int i = a.first_point; i < a.first_point + a.points; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (overlap(owned_point_boxes[k], box) && !is_corner(points[k], other))
-        found.vertex_triangle.push_back({points[k], other.triangle});
-    }
-  }
-
-  void compare_slots(std::size_t i, std::size_t j, FeaturePairs& found) const {
-    const Slot &a = slots[i], &b = slots[j];
-    if (ask_bodies && !surface->may_touch(a.body, b.body)) return;
-    points_against_triangle(a, j, found);
-    points_against_triangle(b, i, found);
-    for (int p = a.first_edge; p < a.first_edge + a.edges; ++p) {
-      const FloatBox& box = owned_edge_boxes[static_cast<std::size_t>(p)];
-      const ContactSurface::Edge& e = ends[static_cast<std::size_t>(p)];
-      for (int q = b.first_edge; q < b.first_edge + b.edges; ++q) {
-        const ContactSurface::Edge& f = ends[static_cast<std::size_t>(q)];
-        const bool share = (e[0] == f[0]) | (e[0] == f[1]) | (e[1] == f[0]) | (e[1] == f[1]);
-        if (share | !overlap(box, owned_edge_boxes[static_cast<std::size_t>(q)])) continue;
-        const int first = edges[static_cast<std::size_t>(p)], second = edges[static_cast<std::size_t>(q)];
-        found.edge_edge.push_back({std::min(first, second), std::max(first, second)});
-      }
-    }
+  void leave_out_unwanted(FeaturePairs& found) const {
+    if (!ask_bodies && !ask_points) return;
+    std::erase_if(found.vertex_triangle, [&](const VertexTriangle& pair) {
+      const Vec3i& t = surface->triangles()[static_cast<std::size_t>(pair.triangle)];
+      return unwanted(pair.point, t[0]) || (t[0] == t[1] && t[1] == t[2] && !is_lone(pair.point));
+    });
+    std::erase_if(found.edge_edge, [&](const EdgeEdge& pair) {
+      return unwanted(surface->edges()[static_cast<std::size_t>(pair.first)][0],
+                      surface->edges()[static_cast<std::size_t>(pair.second)][0]);
+    });
   }
 
   void run(Task& task) const {
-    task.found.vertex_triangle.clear();
-    task.found.edge_edge.clear();
     task.leaves.clear();
     task.stack.assign(1, task.root);
     while (!task.stack.empty()) {
@@ -324,20 +351,8 @@ struct PairSearch::Tree {
         descend(pair, [&](NodePair p) { task.stack.push_back(p); });
       }
     }
-    task.bits.resize(task.leaves.size() * leaf_size);
-    compare_all_leaves(leaf_boxes.data(), task.leaves.data(), task.leaves.size(), task.bits.data());
-    for (std::size_t k = 0; k < task.leaves.size(); ++k) {
-      const auto [a, b] = task.leaves[k];
-      for (unsigned i = 0; i < leaf_size; ++i) {
-        unsigned row = task.bits[k * leaf_size + i];
-        if (a == b) row &= ~((2U << i) - 1);  // each pair within a leaf once
-        for (; row != 0; row &= row - 1) {
-          const auto j = static_cast<unsigned>(std::countr_zero(row));
-          compare_slots(static_cast<std::size_t>(a) * leaf_size + i,
-                        static_cast<std::size_t>(b) * leaf_size + j, task.found);
-        }
-      }
-    }
+    compare_leaves(groups, task.leaves, task.found);
+    leave_out_unwanted(task.found);
   }
 };
 
