@@ -8,6 +8,7 @@
 #include "support/cloth_grid.hpp"
 #include <gtest/gtest.h>
 
+#include "muslin/contact/contact_candidates.hpp"
 #include "muslin/contact/distance.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
@@ -165,6 +166,34 @@ TEST(PairSearch, KeepsItsOrderForAnyThreadCount) {
   set_thread_count(0);
   EXPECT_EQ(many.vertex_triangle, one.vertex_triangle);
   EXPECT_EQ(many.edge_edge, one.edge_edge);
+}
+
+TEST(ContactCandidates, GiveThickClothOnAFineMeshNoContactAtRest) {
+  // 8 mm thick, 2 mm range, 5 mm edges, under a ball of 1 m: what is close at rest is left out, what comes
+  // close by folding is not, and the ball's size does not matter.
+  const test::ClothGrid cloth(12, 12, 0.005);
+  std::vector<Vec3> rest = cloth.positions;
+  rest.push_back(Vec3(0, 1.1, 0));
+  std::vector<Vec3i> triangles = cloth.triangles;
+  triangles.emplace_back(144, 144, 144);
+  std::vector<int> bodies(144, 0);
+  bodies.push_back(1);
+  const auto surface = std::make_shared<ContactSurface>(
+      triangles, bodies, std::vector<ContactBody>{{0.004, true, false}, {1, true, false}});
+  ContactCandidates candidates(surface, rest, 0.002);
+  candidates.update(rest, rest, 2e-3);
+  ASSERT_FALSE(candidates.pairs().empty());
+  for (const ContactPair& pair : candidates.pairs()) {
+    const double gap = pair_geometry(*surface, pair, rest).distance - pair.thickness;
+    EXPECT_GT(gap, pair.range);
+  }
+  std::vector<Vec3> folded = rest;
+  for (std::size_t v = 0; v < 144; ++v)
+    if (rest[v].x() > 0.026) folded[v] = Vec3(0.052 - rest[v].x(), 0.009, rest[v].z());
+  candidates.update(folded, folded, 1e-4);
+  EXPECT_NEAR(candidates.smallest_gap(folded), 0.001, 1e-3);
+  EXPECT_TRUE(std::any_of(candidates.pairs().begin(), candidates.pairs().end(),
+                          [](const ContactPair& pair) { return pair.thickness == 0.008; }));
 }
 
 TEST(ContactSurface, OwnsEachFeatureOnce) {

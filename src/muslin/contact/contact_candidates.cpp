@@ -31,6 +31,13 @@ std::array<int, 4> points_of(const ContactSurface& surface, PairKind kind, int f
   }
 }
 
+std::vector<int> points_of_bodies(const ContactSurface& surface) {
+  std::vector<int> sizes(surface.bodies().size(), 0);
+  for (int p = 0; p < static_cast<int>(surface.point_count()); ++p)
+    ++sizes[static_cast<std::size_t>(surface.body_of(p))];
+  return sizes;
+}
+
 }  // namespace
 
 PairGeometry pair_geometry(const ContactSurface& surface, const ContactPair& pair, ConstVectors x) {
@@ -51,21 +58,26 @@ ContactCandidates::ContactCandidates(std::shared_ptr<const ContactSurface> surfa
     : surface_(std::move(surface)), contact_distance_(contact_distance), search_(surface_, rest) {
   if (!(contact_distance > 0))
     throw Error(ErrorKind::usage, "the contact distance is not positive", "give a length in metres");
-  // What is in range at rest, when thickness and range are as given.
+  // What is close at rest within a body; boxes are widened by the radii already.
+  const std::vector<int> sizes = points_of_bodies(*surface_);
   double thickest = 0;
-  for (const ContactBody& body : surface_->bodies()) thickest = std::max(thickest, 2 * body.radius);
-  search_.find(rest, rest, (thickest + contact_distance) / rest_range, found_);
-  std::vector<ContactPair> close;
-  for (const VertexTriangle& p : found_.vertex_triangle)
-    add(PairKind::vertex_triangle, p.point, p.triangle, rest, close);
-  for (const EdgeEdge& p : found_.edge_edge) add(PairKind::edge_edge, p.first, p.second, rest, close);
-  for (const ContactPair& pair : close) {
-    const int a = surface_->body_of(pair.points[0]);
-    if (a != surface_->body_of(pair.points[3])) continue;
-    const double distance = pair_geometry(*surface_, pair, rest).distance;
-    if (rest_thickness * distance < pair.thickness || rest_range * distance < pair.range)
-      rest_distances_.push_back({pair.key(), distance});
+  for (std::size_t body = 0; body < sizes.size(); ++body) {
+    const ContactBody& b = surface_->bodies()[body];
+    if (sizes[body] > 3 && b.self_contact && !b.fixed) thickest = std::max(thickest, 2 * b.radius);
   }
+  search_.find(rest, rest, std::max(thickest, contact_distance / rest_range), found_);
+  std::vector<ContactPair> pair;
+  const auto note = [&](PairKind kind, int first, int second) {
+    const std::array<int, 4> points = points_of(*surface_, kind, first, second);
+    if (surface_->body_of(points[0]) != surface_->body_of(points[3])) return;
+    pair.clear();
+    add(kind, first, second, rest, pair);
+    const double distance = pair_geometry(*surface_, pair.front(), rest).distance;
+    if (rest_thickness * distance < pair.front().thickness || rest_range * distance < pair.front().range)
+      rest_distances_.push_back({pair.front().key(), distance});
+  };
+  for (const VertexTriangle& p : found_.vertex_triangle) note(PairKind::vertex_triangle, p.point, p.triangle);
+  for (const EdgeEdge& p : found_.edge_edge) note(PairKind::edge_edge, p.first, p.second);
   std::sort(rest_distances_.begin(), rest_distances_.end(),
             [](const RestDistance& a, const RestDistance& b) { return a.key < b.key; });
 }

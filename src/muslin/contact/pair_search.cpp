@@ -75,6 +75,7 @@ MUSLIN_INLINE void edges_against_edges(const Groups& groups, const LeafPair& pai
     // Within a leaf each pair once: later groups, and later lanes of the same group.
     for (int h = pair.a == pair.b ? g : b.first_edges; h < b.last_edges; ++h) {
       const FeatureLanes& second = groups.edges[static_cast<std::size_t>(h)];
+      if (lanes_in_box(second, a.box) == 0) continue;
       out.reserve();
       for (LaneBits left = rows; left != 0; left &= left - 1) {
         const int i = first_lane(left);
