@@ -7,11 +7,11 @@
 
 namespace muslin::test {
 
-/// n × n vertices, 1 m × 1 m, over a sphere of 0.25 m about the origin: it follows the sphere to 70° from the
+/// n × n vertices, 1 m × 1 m, over a sphere of 0.25 m about the origin: it follows the sphere to 95° from the
 /// top and hangs below in twelve folds.
 inline ClothGrid draped_cloth(int n) {
   ClothGrid cloth(n, n, 1.0 / (n - 1));
-  const double radius = 0.251, lap = 70 * M_PI / 180;
+  const double radius = 0.251, lap = 95 * M_PI / 180;
   for (Vec3& p : cloth.positions) {
     const double x = p.x() - 0.5, z = p.z() - 0.5, along = std::hypot(x, z), around = std::atan2(z, x);
     const double angle = along / radius;
