@@ -13,6 +13,7 @@
 
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/vectors.hpp"
+#include "muslin/potential/block_matrix.hpp"
 
 namespace muslin {
 
@@ -109,6 +110,16 @@ class ElementSlabs {
         to[static_cast<std::size_t>(v)] += Vec3(from[c][0][l], from[c][1][l], from[c][2][l]);
       }
     }
+  }
+
+  /// By entry: the blocks of all pairs of corners, row by row.
+  std::vector<std::array<int, N * N>> blocks(const BlockPattern& pattern) const {
+    std::vector<std::array<int, N * N>> slots(vertices_.size());
+    for (std::size_t e = 0; e < slots.size(); ++e) {
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j < N; ++j) slots[e][i * N + j] = pattern.find(vertices_[e][i], vertices_[e][j]);
+    }
+    return slots;
   }
 
   /// `values` by element as an array by entry, long enough to read whole batches.

@@ -206,14 +206,16 @@ double lowest_bias(double warp, double weft) {
   return difference * difference / 4;
 }
 
-HingeBending::HingeBending(const Shell& shell, const BendingModuli& moduli)
-    : slabs_(vertices_of(shell), shell.vertex_count()) {
+HingeBending::HingeBending(const Shell& shell, const BendingModuli& moduli,
+                           std::shared_ptr<const BlockPattern> block_pattern)
+    : ShellEnergy(std::move(block_pattern)), slabs_(vertices_of(shell), shell.vertex_count()) {
   assert(moduli.warp >= 0 && moduli.weft >= 0);
   stiffness_ = slabs_.by_entry<double>([&](std::size_t e) {
     const Hinge& hinge = shell.hinges[e];
     return std::max(0.0, rigidity(moduli, hinge.warp_share)) * hinge.length * hinge.length / hinge.area;
   });
   angle_ = slabs_.by_entry<double>([&](std::size_t e) { return shell.hinges[e].angle; });
+  if (pattern()) slots_ = slabs_.blocks(*pattern());
 }
 
 double HingeBending::value(ConstVectors x) const {
@@ -258,6 +260,31 @@ void HingeBending::add_stiffness_blocks(Stiffness, ConstVectors x, std::span<Mat
         const Vec3 d(g[c][0][l], g[c][1][l], g[c][2][l]);
         blocks[static_cast<std::size_t>(vertices[c])] +=
             stiffness_[static_cast<std::size_t>(first + l)] * d * d.transpose();
+      }
+    }
+  });
+}
+
+void HingeBending::add_stiffness_matrix(Stiffness, ConstVectors x, double scale, BlockMatrix& matrix) const {
+  slabs_.for_each_batch([&](int first, int count, const ElementSlabs<4>::Slab& slab) {
+    Batch<4> corners, g;
+    slabs_.gather(first, count, x, corners);
+    angle_gradients(corners, g);
+    for (int l = 0; l < count; ++l) {
+      const auto entry = static_cast<std::size_t>(first + l);
+      const double root = std::sqrt(scale * stiffness_[entry]);
+      Float4 d[4];
+      for (std::size_t c = 0; c < 4; ++c) {
+        d[c] = Float4{static_cast<float>(root * g[c][0][l]), static_cast<float>(root * g[c][1][l]),
+                      static_cast<float>(root * g[c][2][l]), 0};
+      }
+      for (std::size_t i = 0; i < 4; ++i) {
+        const int at = slabs_.vertices()[entry][i];
+        if (at < slab.vertex_begin || at >= slab.vertex_end) continue;
+        for (std::size_t j = 0; j < 4; ++j) {
+          Float4* block = matrix.block(slots_[entry][4 * i + j]);
+          for (int k = 0; k < 3; ++k) block[k] += d[j][k] * d[i];
+        }
       }
     }
   });

@@ -152,8 +152,9 @@ Rest rest_at(const std::vector<double> (&rest)[5], int first) {
 
 }  // namespace
 
-MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli)
-    : slabs_(corners_of(shell), shell.vertex_count()) {
+MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
+                               std::shared_ptr<const BlockPattern> block_pattern)
+    : ShellEnergy(std::move(block_pattern)), slabs_(corners_of(shell), shell.vertex_count()) {
   assert(moduli.warp >= 0 && moduli.weft >= 0 && moduli.shear >= 0 && std::abs(moduli.poisson) < 1);
   const double plane_stress = 1 / (1 - moduli.poisson * moduli.poisson);
   constants_.c11 = moduli.warp * plane_stress;
@@ -164,6 +165,7 @@ MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli)
     rest_[i] = slabs_.by_entry<double>([&](std::size_t t) { return shell.inverses[t].data()[i]; });
   }
   rest_[4] = slabs_.by_entry<double>([&](std::size_t t) { return shell.areas[t]; });
+  if (pattern()) slots_ = slabs_.blocks(*pattern());
 }
 
 double MembraneEnergy::value(ConstVectors x) const {
@@ -220,6 +222,45 @@ void MembraneEnergy::add_stiffness_blocks(Stiffness kind, ConstVectors x, std::s
         block += (aa * a + ab * b) * a.transpose() + (ab * a + bb * b) * b.transpose();
         block.diagonal().array() +=
             s.suu[l] * u[i] * u[i] + s.svv[l] * v[i] * v[i] + 2 * s.suv[l] * u[i] * v[i];
+      }
+    }
+  });
+}
+
+void MembraneEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+                                          BlockMatrix& matrix) const {
+  const auto& c = constants_;
+  slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {
+    Batch<3> corners;
+    Strained s;
+    slabs_.gather(first, count, x, corners);
+    const Rest rest = rest_at(rest_, first);
+    strained_of_kind(c, kind, rest, corners, s);
+    for (int l = 0; l < count; ++l) {
+      const auto entry = static_cast<std::size_t>(first + l);
+      float a[3], b[3];
+      for (int k = 0; k < 3; ++k) a[k] = static_cast<float>(s.a[k][l]), b[k] = static_cast<float>(s.b[k][l]);
+      const Float4 va = {a[0], a[1], a[2], 0}, vb = {b[0], b[1], b[2], 0};
+      const double u[3] = {-(rest.d00[l] + rest.d10[l]), rest.d00[l], rest.d10[l]};
+      const double v[3] = {-(rest.d01[l] + rest.d11[l]), rest.d01[l], rest.d11[l]};
+      const double area = scale * rest.area[l];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int at = slabs_.vertices()[entry][i];
+        if (at < slab.vertex_begin || at >= slab.vertex_end) continue;
+        for (std::size_t j = 0; j < 3; ++j) {
+          const auto aa = static_cast<float>(area * (c.c11 * u[i] * u[j] + c.g * v[i] * v[j]));
+          const auto bb = static_cast<float>(area * (c.c22 * v[i] * v[j] + c.g * u[i] * u[j]));
+          const auto ab = static_cast<float>(area * (c.c12 * u[i] * v[j] + c.g * v[i] * u[j]));
+          const auto ba = static_cast<float>(area * (c.c12 * v[i] * u[j] + c.g * u[i] * v[j]));
+          const auto geometric = static_cast<float>(scale * (s.suu[l] * u[i] * u[j] + s.svv[l] * v[i] * v[j] +
+                                                             s.suv[l] * (u[i] * v[j] + v[i] * u[j])));
+          Float4* block = matrix.block(slots_[entry][3 * i + j]);
+          for (int k = 0; k < 3; ++k) {
+            Float4 column = (aa * a[k] + ab * b[k]) * va + (ba * a[k] + bb * b[k]) * vb;
+            column[k] += geometric;
+            block[k] += column;
+          }
+        }
       }
     }
   });

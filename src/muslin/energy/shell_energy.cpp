@@ -37,6 +37,15 @@ class Dashpots : public Potential {
     for (std::size_t v = 0; v < blocks.size(); ++v) blocks[v] += factor_ * own[v];
   }
 
+  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
+    if (energy_->pattern()) {
+      energy_->add_stiffness_matrix(Stiffness::material, predicted_, into.scale() * factor_,
+                                    into.matrix(energy_->pattern(), first));
+    } else {
+      into.add_general(*this, first, x);
+    }
+  }
+
  private:
   std::vector<Vec3> moved(ConstVectors x) const {
     std::vector<Vec3> d(x.size());
@@ -56,6 +65,15 @@ class Dashpots : public Potential {
 };
 
 }  // namespace
+
+std::shared_ptr<const BlockPattern> block_pattern(const Shell& shell) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const Vec3i& t : shell.triangles) {
+    for (int c = 0; c < 3; ++c) pairs.emplace_back(t[c], t[(c + 1) % 3]);
+  }
+  for (const Hinge& hinge : shell.hinges) pairs.emplace_back(hinge.vertices[2], hinge.vertices[3]);
+  return std::make_shared<BlockPattern>(std::move(pairs), shell.vertex_count());
+}
 
 ShellDamping::ShellDamping(std::shared_ptr<const ShellEnergy> energy, double beta)
     : energy_(std::move(energy)), beta_(beta) {}

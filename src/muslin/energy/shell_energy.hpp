@@ -2,8 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
+#include "muslin/potential/block_matrix.hpp"
 #include "muslin/potential/potential.hpp"
+#include "muslin/shell/shell.hpp"
 
 namespace muslin {
 
@@ -19,7 +22,8 @@ enum class Stiffness {
 /// get nowhere (docs/theory/shells.md).
 class ShellEnergy : public Potential {
  public:
-  ShellEnergy() : projected_(*this) {}
+  explicit ShellEnergy(std::shared_ptr<const BlockPattern> pattern)
+      : pattern_(std::move(pattern)), projected_(*this) {}
 
   /// y += K p, K the stiffness of this kind at x, #V by 3.
   virtual void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const = 0;
@@ -32,8 +36,18 @@ class ShellEnergy : public Potential {
   void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override {
     add_stiffness_blocks(Stiffness::projected, x, blocks);
   }
+  /// Adds `scale` K to the blocks of a matrix of pattern(); `kind` is material or projected.
+  virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+                                    BlockMatrix& matrix) const = 0;
+  /// Of the shell, if one was given; without, the inner solver computes products from x.
+  const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
+
   void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
-    into.add_general(projected_, first, x);
+    if (pattern_) {
+      add_stiffness_matrix(Stiffness::projected, x, into.scale(), into.matrix(pattern_, first));
+    } else {
+      into.add_general(projected_, first, x);
+    }
   }
 
  private:
@@ -54,8 +68,12 @@ class ShellEnergy : public Potential {
     const ShellEnergy& energy_;
   };
 
+  std::shared_ptr<const BlockPattern> pattern_;
   Projected projected_;
 };
+
+/// The couplings of a shell: of vertices in a triangle or a hinge.
+std::shared_ptr<const BlockPattern> block_pattern(const Shell& shell);
 
 /// Dashpots beside the elastic forces, Rayleigh's stiffness-proportional damping: the force −β K v with K
 /// the material stiffness at the positions predicted for the time the step's velocity belongs to

@@ -41,6 +41,7 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   fixed_ = fixed;
   scale_ = scale;
   sets_.clear();
+  matrices_.clear();
   generals_.clear();
   owned_.clear();
   identity_.resize(masses.size());
@@ -66,6 +67,19 @@ Couplings& Linearization::couplings(const std::shared_ptr<const CouplingPattern>
   return *storage_.back();
 }
 
+BlockMatrix& Linearization::matrix(const std::shared_ptr<const BlockPattern>& pattern, std::size_t first) {
+  const auto stored = std::find_if(matrix_storage_.begin(), matrix_storage_.end(),
+                                   [&](const auto& m) { return m->is_of(pattern) && m->first() == first; });
+  const bool is_new = stored == matrix_storage_.end();
+  if (is_new) matrix_storage_.push_back(std::make_unique<BlockMatrix>());
+  BlockMatrix& matrix = is_new ? *matrix_storage_.back() : **stored;
+  if (std::find(matrices_.begin(), matrices_.end(), &matrix) == matrices_.end()) {
+    matrix.reset(pattern, first);
+    matrices_.push_back(&matrix);
+  }
+  return matrix;
+}
+
 void Linearization::add_general(const Potential& potential, std::size_t first, ConstVectors x) {
   generals_.push_back({&potential, first, x});
 }
@@ -80,6 +94,9 @@ void Linearization::finish() {
   // Sets of other bodies than before are of no use any more.
   std::erase_if(storage_,
                 [&](const auto& c) { return std::find(sets_.begin(), sets_.end(), c.get()) == sets_.end(); });
+  std::erase_if(matrix_storage_, [&](const auto& m) {
+    return std::find(matrices_.begin(), matrices_.end(), m.get()) == matrices_.end();
+  });
   std::sort(sets_.begin(), sets_.end(),
             [](const Couplings* p, const Couplings* q) { return p->first() < q->first(); });
   upper_.resize(size());
@@ -95,6 +112,10 @@ void Linearization::finish() {
   for (const Couplings* set : sets_) {
     const auto first = static_cast<std::ptrdiff_t>(set->first());
     set->add_diagonal(u + first, l + first);
+  }
+  for (const BlockMatrix* matrix : matrices_) {
+    const auto first = static_cast<std::ptrdiff_t>(matrix->first());
+    matrix->add_diagonal(u + first, l + first);
   }
   if (!generals_.empty()) {
     blocks_.assign(size(), Mat3::Zero());
@@ -147,6 +168,10 @@ double Linearization::product(const FloatVectors& p, FloatVectors& y) {
     }
     sum += dot(from, to, begin, end);
   });
+  for (const BlockMatrix* matrix : matrices_) {
+    const auto first = static_cast<std::ptrdiff_t>(matrix->first());
+    sum += matrix->add_product(from + first, to + first);
+  }
   if (generals_.empty()) return sum;
 
   p_.resize(size());
@@ -174,6 +199,7 @@ std::size_t Linearization::bytes() const {
   std::size_t bytes = identity_.bytes() + upper_.bytes() + lower_.bytes() +
                       (p_.capacity() + y_.capacity()) * sizeof(Vec3) + blocks_.capacity() * sizeof(Mat3);
   for (const auto& set : storage_) bytes += set->bytes();
+  for (const auto& matrix : matrix_storage_) bytes += matrix->bytes();
   return bytes;
 }
 

@@ -1,9 +1,9 @@
 // The Hessian of an incremental potential at one x, as the inner solver works with it: in float.
 //
-//   H = diag(identity) + couplings + potentials of any other kind
+//   H = diag(identity) + couplings + block matrices + potentials of any other kind
 //
-// Potentials add themselves (Potential::linearize): springs as couplings, drags as part of the identity,
-// everything else by its product in double.
+// Potentials add themselves (Potential::linearize): springs as couplings, shells as block matrices, drags as
+// part of the identity, everything else by its product in double.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
+#include "muslin/potential/block_matrix.hpp"
 #include "muslin/potential/couplings.hpp"
 
 namespace muslin {
@@ -29,6 +30,9 @@ class Linearization {
 
   /// The couplings of this pattern on vertices first, first + 1, …; zero when first asked for.
   Couplings& couplings(const std::shared_ptr<const CouplingPattern>& pattern, std::size_t first);
+  /// The blocks of this pattern on vertices first, first + 1, …; zero when first asked for. What is added
+  /// must be symmetric and positive semidefinite.
+  BlockMatrix& matrix(const std::shared_ptr<const BlockPattern>& pattern, std::size_t first);
   /// H += value on vertex v; scaled already.
   void add_identity(std::size_t v, double value) { identity_.data()[v] += static_cast<float>(value); }
   /// A potential of vertices first, first + 1, … at x, kept by reference.
@@ -49,6 +53,7 @@ class Linearization {
   double stiffest() const { return stiffest_; }
   const std::uint8_t* fixed() const { return fixed_.data(); }
   std::span<const Couplings* const> sets() const { return sets_; }
+  std::span<const BlockMatrix* const> matrices() const { return matrices_; }
   std::size_t bytes() const;
 
  private:
@@ -64,6 +69,8 @@ class Linearization {
   Buffer<float> identity_;
   std::vector<std::unique_ptr<Couplings>> storage_;  // reused from step to step
   std::vector<const Couplings*> sets_;               // of this x
+  std::vector<std::unique_ptr<BlockMatrix>> matrix_storage_;
+  std::vector<const BlockMatrix*> matrices_;
   std::vector<General> generals_;
   std::vector<std::shared_ptr<const Potential>> owned_;  // of generals_
   FloatVectors upper_, lower_;

@@ -66,12 +66,13 @@ class BodyMaterial {
 
   void build_shell_energies() {
     const ShellMaterial& m = *settings_.material.shell;
+    const auto pattern = block_pattern(body_.shell);
     const auto membrane = std::make_shared<MembraneEnergy>(
-        body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson});
+        body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson}, pattern);
     add("membrane", membrane);
     add_stiffness(*membrane, 3);
     const auto bending = std::make_shared<HingeBending>(
-        body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias});
+        body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias}, pattern);
     add("bending", bending);
     add_stiffness(*bending, 4);
     if (m.stiffness_damping > 0)
