@@ -18,8 +18,8 @@ enum class Stiffness {
 };
 
 /// An elastic energy of a shell. Its Hessian is exact; what it gives the inner solver and the preconditioner
-/// is projected: thin cloth buckles everywhere, and conjugate gradients stopped at every negative curvature
-/// get nowhere (docs/theory/shells.md).
+/// is projected, so that one positive semidefinite matrix serves both (docs/theory/shells.md says what that
+/// costs and saves).
 class ShellEnergy : public Potential {
  public:
   explicit ShellEnergy(std::shared_ptr<const BlockPattern> pattern)

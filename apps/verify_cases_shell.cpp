@@ -1,0 +1,92 @@
+// Shells: a strip that hangs, a strip that bends under its own weight.
+#include <cmath>
+
+#include "verify_case.hpp"
+#include "verify_experiment.hpp"
+#include <fmt/format.h>
+
+namespace muslin::app {
+namespace {
+
+constexpr int cells = 16;  // along either side
+constexpr double gravity = 9.8, areal_density = 0.2;
+
+/// A sheet of 1 m by `width` in the plane y = 0 as a shell; vertex i + k (cells + 1).
+std::string sheet(double membrane, double bending) {
+  return fmt::format(R"(
+[[body]]
+mesh = "sheet.obj"
+model = "shell"
+material = {{ areal_density = {}, membrane_warp = {}, poisson = 0, bending_warp = {} }}
+[[force]]
+type = "gravity"
+acceleration = [0, {}, 0]
+)",
+                     areal_density, membrane, bending, -gravity);
+}
+
+/// Mean of row i of vertices.
+Vec3 row(const Simulation& simulation, int i) {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k <= cells; ++k)
+    sum += simulation.state().positions[static_cast<std::size_t>(i + k * (cells + 1))];
+  return sum / (cells + 1);
+}
+
+std::vector<Comparison> hanging_shell() {
+  const Experiment experiment;
+  experiment.level_sheet("sheet.obj", 1, 0.25, cells);
+  const double membrane = 500;
+  Simulation simulation =
+      experiment.start(static_solve(1e-4) + sheet(membrane, 1e-6) +
+                           "[[pin]]\nwhere = { plane = { point = [0, 0, 0], normal = [0, 1, 0] } }\n",
+                       {"body.0.rotate=[0, 0, -90]"});
+  advance(simulation, 2);
+  std::vector<Comparison> numbers;
+  for (const int i : {4, 8, 12, 16}) {
+    const double s = double(i) / cells;
+    numbers.push_back({fmt::format("u({:.2f} m) [m]", s),
+                       areal_density * gravity * (s - s * s / 2) / membrane, -row(simulation, i).y() - s,
+                       1e-2});
+  }
+  return numbers;
+}
+
+std::vector<Comparison> cantilever_shell() {
+  const Experiment experiment;
+  experiment.level_sheet("sheet.obj", 1, 0.25, cells);
+  const double width = 1.0 / cells;
+  // Two rows are held. A hinge bends what lies half a square on either side of it, so the clamp is half a
+  // square before the second row.
+  const double length = 1 - width / 2;
+  std::vector<Comparison> numbers;
+  struct Case {
+    double gamma, drop_over_reach;
+  };
+  for (const Case& c : {Case{1, 0.1245617664}, Case{5, 0.5857211825}, Case{20, 1.8639301444}}) {
+    const double rigidity = areal_density * gravity * std::pow(length, 3) / c.gamma;
+    Simulation simulation = experiment.start(
+        static_solve(1e-4) + sheet(1e4, rigidity) +
+        fmt::format(
+            "[[pin]]\nwhere = {{ plane = {{ point = [0, 0, 0], normal = [1, 0, 0], distance = {} }} }}\n",
+            1.5 * width));
+    advance(simulation, 2);
+    const Vec3 tip = row(simulation, cells);
+    numbers.push_back({fmt::format("drop over reach, rho g L3/D = {}", c.gamma), c.drop_over_reach,
+                       -tip.y() / (tip.x() - width / 2), 2e-2});
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<VerifyCase> shell_cases() {
+  return {
+      {"hanging-shell", "a hanging shell stretches by rho g (L s - s2/2) / K", "closed form", false,
+       hanging_shell},
+      {"cantilever-shell", "a level strip bends under its own weight as the heavy elastica",
+       "elastica, by shooting; after Romero et al. 2021", true, cantilever_shell},
+  };
+}
+
+}  // namespace muslin::app
