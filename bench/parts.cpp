@@ -8,13 +8,18 @@
 namespace muslin::bench {
 namespace {
 
-/// Bytes a vertex and iteration of conjugate gradients on a lattice larger than the caches. A Hessian product
-/// reads p and writes q (28, float) and reads 8 a coupling; chains along x with the update of x and r 68;
-/// lines along z 64 and along y 68; the update of p 60.
+/// Bytes a vertex and iteration of conjugate gradients on a lattice larger than the caches, by count. For
+/// each position, backwards: r (12, float), x and p updated (48), e and g written (24), M and A − D read
+/// (48), t written (12); forwards: e and g read (24), r updated (24), M read (24), w written (12). For each
+/// block of 16 couplings, in either sweep: 128 of coefficients, a unit, and a Block or a Link.
 double counted_bytes(const Problem& problem) {
-  const double couplings =
-      static_cast<double>(problem.springs->count()) / static_cast<double>(problem.masses.size());
-  return 28 + 8 * couplings + 68 + 64 + 68 + 60;
+  const CouplingPattern& pattern = *problem.springs->pattern();
+  const auto positions = static_cast<double>(pattern.position_count());
+  const auto blocks = static_cast<double>(pattern.block_count()),
+             links = static_cast<double>(pattern.links().size());
+  return (228 * positions + blocks * (2 * 132 + sizeof(CouplingPattern::Block)) +
+          links * sizeof(CouplingPattern::Link)) /
+         static_cast<double>(problem.masses.size());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "support/lattice_box.hpp"
+#include "support/linearized_product.hpp"
 #include "support/potential_battery.hpp"
 #include <gtest/gtest.h>
 
@@ -132,23 +133,14 @@ TEST_P(SpringSlabsTest, LinearizedSpringsAndDashpotsHaveTheirHessian) {
   linearization.finish();
 
   const std::vector<Vec3> p = test::random_vectors(x.size(), 1, 9);
-  FloatVectors p_float, y_float;
-  p_float.resize(x.size());
-  y_float.resize(x.size());
-  const Floats from = p_float.data(), to = y_float.data();
-  for (std::size_t v = 0; v < x.size(); ++v) {
-    from.x[v] = static_cast<float>(p[v].x());
-    from.y[v] = static_cast<float>(p[v].y());
-    from.z[v] = static_cast<float>(p[v].z());
-  }
-  linearization.product(p_float, y_float);
+  const std::vector<Vec3> linearized = test::product(linearization, p);
   std::vector<Vec3> y(x.size(), Vec3::Zero());
   energy->add_hessian_product(x, p, y);
   damping->add_hessian_product(x, p, y);
   for (std::size_t v = 0; v < x.size(); ++v) {
     const Vec3 expected = p[v] + scale * y[v];
     // Couplings across the springs are stored with 8 bits.
-    ASSERT_LE((Vec3(to.x[v], to.y[v], to.z[v]) - expected).norm(), 3e-3 * scale * flag_moduli[0]) << v;
+    ASSERT_LE((linearized[v] - expected).norm(), 3e-3 * scale * flag_moduli[0]) << v;
   }
 }
 

@@ -75,15 +75,7 @@ class Dashpots : public Potential {
   /// The springs' couplings grow along their own direction. It differs from that of the prediction by as
   /// much as they turn within the step; Newton's method and iterative refinement make up for it.
   void linearize(ConstVectors, Linearization& into, std::size_t first) const override {
-    Couplings& couplings = into.couplings(springs_->pattern(), first);
-    for_each_coupling(
-        *springs_->pattern(), predicted_, [&](const CouplingPiece& piece, Columns a, Columns b) {
-          alignas(64) float sx[most_springs], sy[most_springs], sz[most_springs], t[most_springs];
-          couplings.load(piece, sx, sy, sz, t);
-          add_dashpot_couplings(springs_->type(piece.kind, piece.slot, into.scale() * factor_), piece.length,
-                                a, b, sx, sy, sz);
-          couplings.store(piece, sx, sy, sz, t);
-        });
+    add_dashpot_couplings(springs_->block_springs(into.scale() * factor_), predicted_, first, into);
   }
 
  private:

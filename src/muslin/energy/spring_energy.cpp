@@ -16,32 +16,35 @@ auto load(ConstVectors x) {
 }
 
 /// Runs of one b − a that follow one another become one, the shorter ones also across gaps: springs that are
-/// not there cost as little as those that are, ends of loops cost more. Runs along x stay apart: they are the
-/// chains that the preconditioner solves side by side.
+/// not there cost as little as those that are, ends of loops cost more.
 constexpr int shortest_run = 512;
 constexpr int longest_gap = 8;
 
-/// Runs with a < b, by direction and then by a, close ones joined.
-std::vector<CouplingRun> coupling_runs(const Springs& springs) {
+/// Runs with a < b, and for each slot which spring (counted as in Springs) it has, −1 for none.
+struct JoinedRuns {
   std::vector<CouplingRun> runs;
+  std::vector<std::int64_t> springs;
+};
+
+JoinedRuns join(const Springs& springs) {
+  JoinedRuns joined;
   for (const SpringRun& run : springs.runs) {
-    const Vec3i& offset = springs.directions[static_cast<std::size_t>(run.direction)].offset;
-    int axis = -1;
-    for (int c = 0; c < 3; ++c)
-      if (offset.cwiseAbs().sum() == 1 && offset[c] != 0) axis = c;
     const int a = std::min(run.a, run.b), b = std::max(run.a, run.b);
-    if (!runs.empty()) {
-      CouplingRun& last = runs.back();
+    if (!joined.runs.empty()) {
+      CouplingRun& last = joined.runs.back();
       const int gap = a - last.a - last.length;
       const bool worth_it = gap == 0 || (gap <= longest_gap && run.length < shortest_run);
-      if (last.kind == run.direction && last.b - last.a == b - a && gap >= 0 && worth_it && axis != 0) {
+      if (last.kind == run.direction && last.b - last.a == b - a && gap >= 0 && worth_it) {
         last.length += gap + run.length;
+        joined.springs.insert(joined.springs.end(), static_cast<std::size_t>(gap), -1);
+        for (int i = 0; i < run.length; ++i) joined.springs.push_back(run.first + i);
         continue;
       }
     }
-    runs.push_back({run.direction, axis, a, b, run.length});
+    joined.runs.push_back({run.direction, a, b, run.length});
+    for (int i = 0; i < run.length; ++i) joined.springs.push_back(run.first + i);
   }
-  return runs;
+  return joined;
 }
 
 }  // namespace
@@ -56,29 +59,41 @@ SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::arra
                       width * moduli[static_cast<std::size_t>(direction.kind)]});
   }
   int vertex_count = 0;
-  for (const SpringRun& run : springs.runs)
-    vertex_count = std::max({vertex_count, run.a + run.length, run.b + run.length});
-  pattern_ = std::make_shared<const CouplingPattern>(coupling_runs(springs), vertex_count);
-  slabs_ = SpringSlabs(*pattern_);
-  if (weights_.empty() && pattern_->slot_count() == count_) return;
-  slot_weights_.assign(static_cast<std::size_t>(pattern_->slot_count()), 0.0F);
-  std::vector<std::vector<const CouplingPiece*>> pieces(types_.size());  // by kind, then a
-  for (const CouplingPiece& piece : pattern_->pieces())
-    pieces[static_cast<std::size_t>(piece.kind)].push_back(&piece);
-  for (auto& of_kind : pieces)
-    std::sort(of_kind.begin(), of_kind.end(), [](const auto* p, const auto* q) { return p->a < q->a; });
+  std::vector<CouplingRun> runs;
   for (const SpringRun& run : springs.runs) {
-    const auto& of_kind = pieces[static_cast<std::size_t>(run.direction)];
-    const int a = std::min(run.a, run.b);
-    auto piece = std::upper_bound(of_kind.begin(), of_kind.end(), a,
-                                  [](int v, const CouplingPiece* p) { return v < p->a; }) -
-                 1;
-    for (int i = 0; i < run.length; ++i) {
-      while (a + i >= (*piece)->a + (*piece)->length) ++piece;
-      slot_weights_[static_cast<std::size_t>((*piece)->slot + a + i - (*piece)->a)] =
-          weights_.empty() ? 1.0F : weights_[static_cast<std::size_t>(run.first + i)];
-    }
+    vertex_count = std::max({vertex_count, run.a + run.length, run.b + run.length});
+    runs.push_back({run.direction, run.a, run.b, run.length});
   }
+  const JoinedRuns joined = join(springs);
+  slabs_ = SpringSlabs(joined.runs, vertex_count);
+  const auto weight = [&](std::int64_t spring) {
+    return spring < 0 ? 0.0F : weights_.empty() ? 1.0F : weights_[static_cast<std::size_t>(spring)];
+  };
+  if (!weights_.empty() || static_cast<std::int64_t>(joined.springs.size()) != count_) {
+    slot_weights_.resize(joined.springs.size());
+    std::transform(joined.springs.begin(), joined.springs.end(), slot_weights_.begin(), weight);
+  }
+
+  std::vector<std::int64_t> order;
+  pattern_ = std::make_shared<const CouplingPattern>(runs, vertex_count, weights_.empty() ? nullptr : &order);
+  if (weights_.empty()) return;
+  // Couplings are counted through the runs, as the order in which they are given.
+  std::vector<std::int64_t> spring_of;
+  for (const SpringRun& run : springs.runs)
+    for (int i = 0; i < run.length; ++i) spring_of.push_back(run.first + i);
+  block_weights_.resize(order.size());
+  std::transform(order.begin(), order.end(), block_weights_.begin(), [&](std::int64_t coupling) {
+    return weight(coupling < 0 ? -1 : spring_of[static_cast<std::size_t>(coupling)]);
+  });
+}
+
+BlockSprings SpringEnergy::block_springs(double factor) const {
+  BlockSprings springs;
+  springs.pattern = pattern_;
+  for (const Type& type : types_)
+    springs.types.push_back({static_cast<float>(factor * type.stiffness), static_cast<float>(type.rest)});
+  springs.weights = block_weights_.empty() ? nullptr : block_weights_.data();
+  return springs;
 }
 
 double SpringEnergy::value(ConstVectors x) const {
@@ -122,12 +137,7 @@ void SpringEnergy::add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) c
 }
 
 void SpringEnergy::linearize(ConstVectors x, Linearization& into, std::size_t first) const {
-  Couplings& couplings = into.couplings(pattern_, first);
-  for_each_coupling(*pattern_, x, [&](const CouplingPiece& piece, Columns a, Columns b) {
-    alignas(64) float sx[most_springs], sy[most_springs], sz[most_springs], t[most_springs];
-    spring_couplings(type(piece.kind, piece.slot, into.scale()), piece.length, a, b, sx, sy, sz, t);
-    couplings.store(piece, sx, sy, sz, t);
-  });
+  set_spring_couplings(block_springs(into.scale()), x, first, into);
 }
 
 double SpringEnergy::max_stretch(ConstVectors x) const {

@@ -16,6 +16,7 @@
 #include <memory>
 #include <vector>
 
+#include "muslin/energy/spring_couplings.hpp"
 #include "muslin/energy/spring_kernels.hpp"
 #include "muslin/energy/spring_slabs.hpp"
 #include "muslin/lattice/springs.hpp"
@@ -57,8 +58,10 @@ class SpringEnergy : public Potential {
   }
   std::int64_t count() const { return count_; }
 
-  /// The springs as the inner solver walks them; kinds are directions. A slot without a spring has weight 0.
+  /// The springs as the inner solver eliminates them; kinds are directions.
   const std::shared_ptr<const CouplingPattern>& pattern() const { return pattern_; }
+  /// All springs of the pattern, `factor` k.
+  BlockSprings block_springs(double factor) const;
 
  private:
   struct Type {
@@ -69,7 +72,8 @@ class SpringEnergy : public Potential {
   std::vector<float> weights_;
   std::int64_t count_ = 0;
   std::shared_ptr<const CouplingPattern> pattern_;
-  std::vector<float> slot_weights_;
+  std::vector<float> slot_weights_;   // 0 where joining runs left a gap
+  std::vector<float> block_weights_;  // in the order of the pattern, 16 each block
   SpringSlabs slabs_;
 };
 

@@ -62,11 +62,4 @@ void add_dashpot_forces(const SpringType& type, int n, Columns a, Columns b, Col
 void add_dashpot_energies(const SpringType& type, int n, Columns a, Columns b, Columns p_a, Columns p_b,
                           double* w);
 
-/// ∂²W/∂z² = s sᵀ + t I: s = √(k r/|z|) n and t = k (1 − r/|z|); s = 0 and t = k without a direction.
-void spring_couplings(const SpringType& type, int n, Columns a, Columns b, float* sx, float* sy, float* sz,
-                      float* t);
-/// s sᵀ += k n nᵀ of dashpots along n ∥ s: s grows to √(|s|² + k) n. Where s is zero, n is z/|z|.
-void add_dashpot_couplings(const SpringType& type, int n, Columns a, Columns b, float* sx, float* sy,
-                           float* sz);
-
 }  // namespace muslin

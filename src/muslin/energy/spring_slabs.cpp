@@ -11,19 +11,19 @@ constexpr int reaches_per_slab = 4;  // springs between slabs are computed twice
 
 }  // namespace
 
-SpringSlabs::SpringSlabs(const CouplingPattern& pattern) {
-  const int count = pattern.vertex_count();
+SpringSlabs::SpringSlabs(const std::vector<CouplingRun>& runs, int vertex_count) {
   int reach = 0;
-  for (const CouplingPiece& piece : pattern.pieces()) reach = std::max(reach, piece.b - piece.a);
-  int slab_size = std::max({smallest_slab, count / largest_slab_count, reaches_per_slab * reach});
+  for (const CouplingRun& run : runs) reach = std::max(reach, run.b - run.a);
+  int slab_size = std::max({smallest_slab, vertex_count / largest_slab_count, reaches_per_slab * reach});
   slab_size = (slab_size + block_size - 1) / block_size * block_size;
 
-  for (const CouplingPiece& piece : pattern.pieces()) {
-    for (int i = 0; i < piece.length;) {
-      const int a = piece.a + i, b = piece.b + i;
-      const int end = std::min({piece.length, (a / block_size + 1) * block_size - piece.a,
-                                (b / slab_size + 1) * slab_size - piece.b});
-      SpringPiece part{piece.kind, a, b, end - i, piece.slot + i, Ends::both};
+  std::int64_t slot = 0;
+  for (const CouplingRun& run : runs) {
+    for (int i = 0; i < run.length;) {
+      const int a = run.a + i, b = run.b + i;
+      const int end = std::min(
+          {run.length, (a / block_size + 1) * block_size - run.a, (b / slab_size + 1) * slab_size - run.b});
+      SpringPiece part{run.kind, a, b, end - i, slot + i, Ends::both};
       if (a / slab_size != b / slab_size) {
         part.ends = Ends::b;
         pieces_.push_back(part);
@@ -32,6 +32,7 @@ SpringSlabs::SpringSlabs(const CouplingPattern& pattern) {
       pieces_.push_back(part);
       i = end;
     }
+    slot += run.length;
   }
   const auto block_of = [](const SpringPiece& p) { return (p.ends == Ends::b ? p.b : p.a) / block_size; };
   std::sort(pieces_.begin(), pieces_.end(), [&](const SpringPiece& p, const SpringPiece& q) {
@@ -40,10 +41,10 @@ SpringSlabs::SpringSlabs(const CouplingPattern& pattern) {
   });
 
   std::size_t at = 0;
-  for (int begin = 0; begin < count; begin += slab_size) {
+  for (int begin = 0; begin < vertex_count; begin += slab_size) {
     Slab slab;
     slab.begin = slab.read_begin = begin;
-    slab.end = slab.read_end = std::min(begin + slab_size, count);
+    slab.end = slab.read_end = std::min(begin + slab_size, vertex_count);
     slab.block_begin = blocks_.size();
     for (int v = begin; v < slab.end; v += block_size) {
       Block block;

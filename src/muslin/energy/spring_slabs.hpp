@@ -31,7 +31,7 @@ struct SpringPiece {
   int a = 0;
   int b = 0;
   int length = 0;
-  std::int64_t slot = 0;  ///< of the first spring in the coupling pattern
+  std::int64_t slot = 0;  ///< of the first spring
   Ends ends = Ends::both;
 };
 
@@ -48,7 +48,8 @@ class SpringSlabs {
   static constexpr int block_size = 1024;  // vertices
 
   SpringSlabs() = default;
-  explicit SpringSlabs(const CouplingPattern& pattern);
+  /// Runs with a < b; slots count through them.
+  SpringSlabs(const std::vector<CouplingRun>& runs, int vertex_count);
 
   /// Calls apply(piece, columns) for every spring of every slab; returns the sum of the energies that it
   /// leaves in columns.w. load(v, n, columns) brings the vectors of n vertices from v into the columns. The
@@ -162,36 +163,6 @@ class SpringSlabs {
 /// x_b − x_a of spring i of a piece.
 inline Vec3 difference(ConstVectors x, const SpringPiece& piece, int i) {
   return x[static_cast<std::size_t>(piece.b + i)] - x[static_cast<std::size_t>(piece.a + i)];
-}
-
-/// Calls body(piece, a, b) for all pieces of the pattern, in parallel; a and b are columns of x at its ends.
-template <class Body>
-void for_each_coupling(const CouplingPattern& pattern, ConstVectors x, const Body& body) {
-  const auto& pieces = pattern.pieces();
-  parallel_for(pattern.first_piece().size() - 1, 1, [&](std::size_t begin, std::size_t end) {
-    const auto first = static_cast<std::size_t>(pattern.first_piece()[begin]);
-    const auto last = static_cast<std::size_t>(pattern.first_piece()[end]);
-    int read_begin = pattern.vertex_count(), read_end = 0;
-    for (std::size_t p = first; p < last; ++p) {
-      read_begin = std::min(read_begin, pieces[p].a);
-      read_end = std::max(read_end, pieces[p].b + pieces[p].length);
-    }
-    if (read_begin >= read_end) return;
-    const std::size_t stride = column_stride(read_end - read_begin);
-    double* const memory = column_memory(3 * stride);
-    const Columns columns{memory, memory + stride, memory + 2 * stride};
-    int loaded = read_begin;
-    for (std::size_t p = first; p < last; ++p) {
-      const CouplingPiece& piece = pieces[p];
-      const int needed = piece.b + piece.length;
-      if (needed > loaded) {
-        load_columns(x[static_cast<std::size_t>(loaded)].data(), needed - loaded,
-                     columns + (loaded - read_begin));
-        loaded = needed;
-      }
-      body(piece, columns + (piece.a - read_begin), columns + (piece.b - read_begin));
-    }
-  });
 }
 
 }  // namespace muslin

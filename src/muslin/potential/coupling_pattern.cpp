@@ -4,212 +4,260 @@
 #include <cassert>
 #include <cstdlib>
 #include <numeric>
+#include <tuple>
 
 namespace muslin {
 namespace {
 
-constexpr int largest_slab_count = 64;
-constexpr int smallest_slab = 2048;   // vertices
-constexpr int reaches_per_slab = 4;   // a coupling between slabs is computed twice: keep them few
-constexpr int lines_per_group = 128;  // the same vector lanes at every step along the lines
-constexpr int vertices_per_task = 4096;
+constexpr int lanes = CouplingPattern::lanes;
+constexpr int smallest_slab = 4096;  // vertices: below, threads gain nothing
+constexpr int usual_slab = 131072;   // vertices: every second border between slabs costs iterations
+constexpr int most_slabs = 64;
+constexpr int reaches_per_slab = 4;  // the layers between slabs must be thin beside the slabs
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// One slab, or an even number of them.
+int slab_count(int vertex_count, int reach) {
+  const int most = vertex_count / std::max(smallest_slab, reaches_per_slab * reach) / 2 * 2;
+  if (most < 2) return 1;
+  return std::clamp(vertex_count / usual_slab / 2 * 2, 2, std::min(most_slabs, most));
+}
+
+/// Calls body(a, b, kind, index) for every coupling.
+template <class Body>
+void for_each_coupling(std::span<const CouplingRun> runs, const Body& body) {
+  std::int64_t index = 0;
+  for (const CouplingRun& run : runs)
+    for (int i = 0; i < run.length; ++i) body(run.a + i, run.b + i, run.kind, index++);
+}
 
 }  // namespace
 
-CouplingPattern::CouplingPattern(std::vector<CouplingRun> runs, int vertex_count)
-    : vertex_count_(vertex_count) {
-  for (CouplingRun& run : runs) {
-    assert(run.a != run.b);
-    if (run.b < run.a) std::swap(run.a, run.b);
-  }
-  cut(runs);
-  find_chains();
-  find_lines(1);
-  find_lines(2);
+bool CouplingPattern::Split::before(int u, int v) const {
+  const int task_u = task[at(u)], task_v = task[at(v)];
+  if (task_u != task_v) return task_u < task_v;
+  return downwards[at(task_u)] ? u > v : u < v;
 }
 
-void CouplingPattern::cut(const std::vector<CouplingRun>& runs) {
+CouplingPattern::CouplingPattern(std::span<const CouplingRun> runs, int vertex_count,
+                                 std::vector<std::int64_t>* order) {
+  position_.resize(at(vertex_count));
+  const Split split = this->split(runs);
+  EarlierEnds earlier;
+  earlier.begin.assign(at(vertex_count) + 1, 0);
+  for_each_coupling(
+      runs, [&](int a, int b, int, std::int64_t) { ++earlier.begin[at(split.before(a, b) ? b : a) + 1]; });
+  std::partial_sum(earlier.begin.begin(), earlier.begin.end(), earlier.begin.begin());
+  earlier.couplings.resize(at(earlier.begin.back()));
+  std::vector<std::int64_t> fill(earlier.begin.begin(), earlier.begin.end() - 1);
+  for_each_coupling(runs, [&](int a, int b, int kind, std::int64_t index) {
+    if (split.before(b, a)) std::swap(a, b);
+    earlier.couplings[at(fill[at(b)]++)] = {a, 2 * kind + (a < b ? 1 : 0), index};
+  });
+  // In the layers of a thin sheet, vertices with many couplings had better be apart from those with few; in
+  // other shapes that breaks runs of neighbours.
+  arrange(earlier, split, true);
+  make_blocks(earlier, order);
+  const std::size_t blocks = blocks_.size();
+  arrange(earlier, split, false);
+  make_blocks(earlier, order);
+  if (blocks < blocks_.size()) {
+    arrange(earlier, split, true);
+    make_blocks(earlier, order);
+  }
+  make_links();
+}
+
+CouplingPattern::Split CouplingPattern::split(std::span<const CouplingRun> runs) const {
   int reach = 0;
-  for (const CouplingRun& run : runs) reach = std::max(reach, run.b - run.a);
-  int slab_size = std::max({smallest_slab, vertex_count_ / largest_slab_count, reaches_per_slab * reach});
-  slab_size = (slab_size + block_size - 1) / block_size * block_size;
-
-  for (const CouplingRun& run : runs) {
-    for (int i = 0; i < run.length;) {
-      const int a = run.a + i, b = run.b + i;
-      const int end = std::min(
-          {run.length, (a / block_size + 1) * block_size - run.a, (b / slab_size + 1) * slab_size - run.b});
-      pieces_.push_back({run.kind, run.axis, a, b, end - i, 0, 0});
-      i = end;
-    }
+  for (const CouplingRun& run : runs) reach = std::max(reach, std::abs(run.b - run.a));
+  const int slabs = slab_count(vertex_count(), reach);
+  // Tasks 0 … slabs − 1 are the layers that go first, then come the slabs, then the layers that wait.
+  Split split;
+  split.phase = {0, slabs, 2 * slabs, 3 * slabs};
+  split.task.resize(position_.size());
+  split.downwards.resize(at(3 * slabs));
+  std::vector<int> slab(position_.size());
+  for (int s = 0; s < slabs; ++s) {
+    const std::int64_t count = vertex_count(), begin = count * s / slabs, end = count * (s + 1) / slabs;
+    std::fill(slab.begin() + begin, slab.begin() + end, s);
+    std::fill(split.task.begin() + begin, split.task.begin() + end, slabs + s);
+    split.downwards[at(slabs + s)] = s % 2 == 1;
   }
-  const auto leaves = [&](const CouplingPiece& p) { return p.a / slab_size != p.b / slab_size; };
-  std::stable_sort(pieces_.begin(), pieces_.end(), [&](const CouplingPiece& p, const CouplingPiece& q) {
-    const int block_p = p.a / block_size, block_q = q.a / block_size;
-    if (block_p != block_q) return block_p < block_q;
-    if (leaves(p) != leaves(q)) return leaves(q);
-    return p.kind < q.kind;
+  for_each_coupling(runs, [&](int a, int b, int, std::int64_t) {
+    assert(a != b);
+    const int low = std::min(a, b), high = std::max(a, b), s = slab[at(high)];
+    if (slab[at(low)] != s) split.task[at(high)] = s % 2 == 0 ? s : 2 * slabs + s;
   });
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    pieces_[i].index = static_cast<int>(i);
-    pieces_[i].slot = slot_count_;
-    slot_count_ += pieces_[i].length;
-  }
-
-  for (const CouplingPiece& piece : pieces_)
-    if (leaves(piece)) entering_.push_back(piece.index);
-  std::stable_sort(entering_.begin(), entering_.end(), [&](int p, int q) {
-    return pieces_[static_cast<std::size_t>(p)].b / block_size <
-           pieces_[static_cast<std::size_t>(q)].b / block_size;
-  });
-
-  std::size_t at = 0, entered = 0;
-  for (int begin = 0; begin < vertex_count_; begin += slab_size) {
-    Slab slab{static_cast<int>(blocks_.size()), 0};
-    const int slab_end = std::min(begin + slab_size, vertex_count_);
-    first_piece_.push_back(static_cast<int>(at));
-    int started = begin;
-    for (int v = begin; v < slab_end; v += block_size) {
-      Block block;
-      block.begin = v;
-      block.end = std::min(v + block_size, slab_end);
-      int touched = block.end;
-      block.own_begin = static_cast<int>(at);
-      for (; at < pieces_.size() && pieces_[at].a < block.end && !leaves(pieces_[at]); ++at)
-        touched = std::max(touched, pieces_[at].b + pieces_[at].length);
-      block.own_end = block.leaving_begin = static_cast<int>(at);
-      while (at < pieces_.size() && pieces_[at].a < block.end) ++at;
-      block.leaving_end = static_cast<int>(at);
-      block.entering_begin = static_cast<int>(entered);
-      for (; entered < entering_.size(); ++entered) {
-        const CouplingPiece& piece = pieces_[static_cast<std::size_t>(entering_[entered])];
-        if (piece.b >= block.end) break;
-        touched = std::max(touched, piece.b + piece.length);
-      }
-      block.entering_end = static_cast<int>(entered);
-      block.start_begin = started;
-      block.start_end = started = std::max(started, std::min(touched, slab_end));
-      blocks_.push_back(block);
-    }
-    slab.block_end = static_cast<int>(blocks_.size());
-    slabs_.push_back(slab);
-  }
-  first_piece_.push_back(static_cast<int>(at));
+  return split;
 }
 
-void CouplingPattern::find_chains() {
-  chain_links_.resize(static_cast<std::size_t>(vertex_count_));
-  for (const CouplingPiece& piece : pieces_) {
-    if (piece.axis != 0 || piece.b != piece.a + 1) continue;
-    for (int i = 0; i < piece.length; ++i)
-      chain_links_[static_cast<std::size_t>(piece.a + i)] = {piece.index, i};
-  }
-  for (int v = 0; v < vertex_count_;) {
-    int end = v + 1;
-    while (chain_links_[static_cast<std::size_t>(end - 1)].piece >= 0) ++end;
-    chains_.push_back({v, end - v});
-    v = end;
-  }
-  // Chains of one bundle run side by side: alike in length, neighbours where possible.
-  std::stable_sort(chains_.begin(), chains_.end(),
-                   [](const Chain& p, const Chain& q) { return p.length > q.length; });
-}
+void CouplingPattern::arrange(const EarlierEnds& earlier, const Split& split, bool by_count) {
+  vertex_.clear(), groups_.clear(), tasks_.clear(), phases_.clear();
+  const int count = vertex_count();
+  const std::size_t task_count = split.downwards.size();
+  std::vector<std::vector<int>> members(task_count);
+  for (int v = 0; v < count; ++v) members[at(split.task[at(v)])].push_back(v);
+  std::int64_t most = 0;  // couplings of a vertex with earlier ones
+  for (int v = 0; v < count; ++v) most = std::max(most, earlier.begin[at(v) + 1] - earlier.begin[at(v)]);
 
-void CouplingPattern::find_lines(int axis) {
-  LinePattern& lines = lines_[axis - 1];
-  const auto count = static_cast<std::size_t>(vertex_count_);
-  struct Neighbour {
-    int vertex = -1, piece = -1, offset = 0;
+  const auto empty_group = [&] {
+    groups_.emplace_back();
+    vertex_.insert(vertex_.end(), lanes, -1);
   };
-  std::vector<Neighbour> before(count), after(count);
-  for (const CouplingPiece& piece : pieces_) {
-    if (piece.axis != axis) continue;
-    for (int i = 0; i < piece.length; ++i) {
-      before[static_cast<std::size_t>(piece.b + i)] = {piece.a + i, piece.index, i};
-      after[static_cast<std::size_t>(piece.a + i)] = {piece.b + i, piece.index, i};
-    }
-  }
-
-  // A line belongs to the group of the line beside it, as long as that is not full.
-  std::vector<int> group(count), size;
-  for (std::size_t v = 0; v < count; ++v) {
-    if (before[v].vertex >= 0) {
-      group[v] = group[static_cast<std::size_t>(before[v].vertex)];
-      continue;
-    }
-    const int beside = v > 0 ? group[v - 1] : -1;
-    const bool grows = v > 0 && before[v - 1].vertex >= 0;  // the row is longer than the one before it
-    if (beside >= 0 && size[static_cast<std::size_t>(beside)] < (grows ? 2 : 1) * lines_per_group) {
-      group[v] = beside;
-      ++size[static_cast<std::size_t>(beside)];
-    } else {
-      group[v] = static_cast<int>(size.size());
-      size.push_back(1);
-    }
-  }
-  std::vector<int> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int p, int q) {
-    return group[static_cast<std::size_t>(p)] < group[static_cast<std::size_t>(q)];
-  });
-
-  // Consecutive in vertex, in neighbour and in the piece between.
-  const auto segments = [&](std::vector<LineSegment>& out, const std::vector<Neighbour>& neighbour,
-                            std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const int v = order[i];
-      const Neighbour& n = neighbour[static_cast<std::size_t>(v)];
-      if (i > begin) {
-        LineSegment& last = out.back();
-        const bool next = v == last.vertex + last.length;
-        const bool alike = n.piece == last.piece && (n.piece < 0 || n.offset == last.offset + last.length);
-        // Vertices of one segment are solved side by side: none may be another's neighbour.
-        const bool apart = n.piece < 0 || last.length < std::abs(last.vertex - last.other);
-        if (next && alike && apart) {
-          ++last.length;
-          continue;
+  empty_group();
+  std::vector<int> level(at(count));
+  struct Place {
+    int level;
+    bool crowded;
+    int rank;
+    auto operator<=>(const Place&) const = default;
+  };
+  std::vector<Place> places;
+  for (std::size_t phase = 0; phase + 1 < split.phase.size(); ++phase) {
+    phases_.push_back(static_cast<int>(tasks_.size()));
+    for (int t = split.phase[phase]; t < split.phase[phase + 1]; ++t) {
+      std::vector<int>& vertices = members[at(t)];
+      if (vertices.empty()) continue;
+      if (split.downwards[at(t)]) std::reverse(vertices.begin(), vertices.end());
+      places.clear();
+      for (std::size_t rank = 0; rank < vertices.size(); ++rank) {
+        const int v = vertices[rank];
+        int highest = 0;
+        for (std::int64_t i = earlier.begin[at(v)]; i < earlier.begin[at(v) + 1]; ++i) {
+          const int u = earlier.couplings[at(i)].vertex;
+          if (split.task[at(u)] == t) highest = std::max(highest, level[at(u)] + 1);
+        }
+        level[at(v)] = highest;
+        const bool crowded = by_count && 2 * (earlier.begin[at(v) + 1] - earlier.begin[at(v)]) > most;
+        places.push_back({highest, crowded, static_cast<int>(rank)});
+      }
+      std::sort(places.begin(), places.end());
+      Task task;
+      task.group_begin = static_cast<int>(groups_.size());
+      for (std::size_t i = 0; i < places.size();) {
+        std::size_t end = i;
+        while (end < places.size() && end < i + lanes && places[end].level == places[i].level) ++end;
+        const std::size_t base = vertex_.size();
+        empty_group();
+        for (std::size_t l = 0; i < end; ++i, ++l) {
+          vertex_[base + l] = vertices[at(places[i].rank)];
+          position_[at(vertex_[base + l])] = static_cast<int>(base + l);
         }
       }
-      out.push_back({v, n.vertex, 1, n.piece, n.offset, static_cast<std::int64_t>(i)});
+      task.group_end = static_cast<int>(groups_.size());
+      tasks_.push_back(task);
+      empty_group();  // reading past the ends of a task meets nothing that another one writes
+    }
+  }
+  phases_.push_back(static_cast<int>(tasks_.size()));
+}
+
+void CouplingPattern::make_blocks(const EarlierEnds& earlier, std::vector<std::int64_t>* order) {
+  struct Entry {
+    int kind, lane, base;  // base: position of the earlier end less the lane
+    std::int64_t index;
+  };
+  blocks_.clear();
+  if (order) order->clear();
+  std::vector<Entry> entries;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    entries.clear();
+    for (int l = 0; l < lanes; ++l) {
+      const int v = vertex_[g * lanes + at(l)];
+      if (v < 0) continue;
+      for (std::int64_t i = earlier.begin[at(v)]; i < earlier.begin[at(v) + 1]; ++i) {
+        const Coupling& c = earlier.couplings[at(i)];
+        entries.push_back({c.kind, l, position_[at(c.vertex)] - l, c.index});
+      }
+    }
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& p, const Entry& q) {
+      return std::tie(p.kind, p.lane) < std::tie(q.kind, q.lane);
+    });
+    groups_[g].block_begin = static_cast<int>(blocks_.size());
+    // A block takes lanes in ascending order for as long as two bases are enough.
+    int kind = -1, last_lane = lanes, breaks = 2;
+    for (const Entry& e : entries) {
+      const bool fits =
+          e.kind == kind && e.lane > last_lane && (e.base == blocks_.back().second || breaks == 0);
+      if (!fits) {
+        blocks_.push_back({e.kind / 2, static_cast<int>(g), e.base, e.base, 0, 0});
+        if (order) order->insert(order->end(), lanes, -1);
+        breaks = 0;
+      } else if (e.base != blocks_.back().second) {
+        blocks_.back().second = e.base;
+        blocks_.back().cut = e.lane;
+        breaks = 1;
+      }
+      kind = e.kind;
+      last_lane = e.lane;
+      blocks_.back().used = static_cast<std::uint16_t>(blocks_.back().used | 1U << e.lane);
+      if (order) (*order)[(blocks_.size() - 1) * lanes + at(e.lane)] = e.index;
+    }
+    groups_[g].block_end = static_cast<int>(blocks_.size());
+  }
+}
+
+void CouplingPattern::make_links() {
+  struct Entry {
+    int kind, block, shift, lane;  // lane of the earlier end; that of the later one less it
+  };
+  const auto for_each_end = [&](const auto& body) {
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& block = blocks_[b];
+      for (int l = 0; l < lanes; ++l) {
+        if ((block.used >> l & 1) == 0) continue;
+        const int position = l + (l < block.cut ? block.first : block.second);
+        body(position / lanes,
+             Entry{block.kind, static_cast<int>(b), l - position % lanes, position % lanes});
+      }
     }
   };
-  for (std::size_t begin = 0; begin < count;) {
-    const int g = group[static_cast<std::size_t>(order[begin])];
-    std::size_t end = begin;
-    while (end < count && group[static_cast<std::size_t>(order[end])] == g) ++end;
-    LinePattern::Group out;
-    out.forward_begin = static_cast<int>(lines.forward.size());
-    segments(lines.forward, before, begin, end);
-    out.forward_end = static_cast<int>(lines.forward.size());
-    out.backward_begin = static_cast<int>(lines.backward.size());
-    segments(lines.backward, after, begin, end);
-    out.backward_end = static_cast<int>(lines.backward.size());
-    std::reverse(lines.backward.begin() + out.backward_begin, lines.backward.begin() + out.backward_end);
-    if (lines.tasks.empty() || static_cast<int>(begin) - lines.tasks.back() >= vertices_per_task)
-      lines.tasks.push_back(static_cast<int>(begin));
-    lines.groups.push_back(out);
-    begin = end;
+  std::vector<std::int64_t> begin(groups_.size() + 1);
+  for_each_end([&](int group, const Entry&) { ++begin[at(group) + 1]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Entry> entries(at(begin.back()));
+  std::vector<std::int64_t> fill(begin.begin(), begin.end() - 1);
+  for_each_end([&](int group, const Entry& e) { entries[at(fill[at(group)]++)] = e; });
+
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const auto first = entries.begin() + begin[g], last = entries.begin() + begin[g + 1];
+    std::sort(first, last, [](const Entry& p, const Entry& q) {
+      return std::tie(p.kind, p.block, p.shift, p.lane) < std::tie(q.kind, q.block, q.shift, q.lane);
+    });
+    groups_[g].link_begin = static_cast<int>(links_.size());
+    int kind = -1, halves = 2;
+    for (auto e = first; e != last;) {
+      // One stretch: the lanes that one block serves at one distance.
+      auto end = e;
+      std::uint16_t used = 0;
+      for (; end != last && end->block == e->block && end->shift == e->shift; ++end)
+        used = static_cast<std::uint16_t>(used | 1U << end->lane);
+      const bool fits = e->kind == kind && halves == 1 && (links_.back().used[0] & used) == 0;
+      if (!fits) {
+        links_.emplace_back();
+        halves = 0;
+      }
+      Link& link = links_.back();
+      for (std::size_t h = at(halves); h < 2; ++h) {  // the second half is like the first until it is known
+        link.block[h] = e->block;
+        link.shift[h] = e->shift;
+        link.position[h] = lanes * blocks_[at(e->block)].group + e->shift;
+        link.used[h] = h == at(halves) ? used : std::uint16_t{0};
+      }
+      ++halves;
+      kind = e->kind;
+      e = end;
+    }
+    groups_[g].link_end = static_cast<int>(links_.size());
   }
-  // tasks holds first vertices so far: turn them into groups.
-  std::vector<int> first_group;
-  std::size_t at = 0, g = 0;
-  for (const LinePattern::Group& each : lines.groups) {
-    if (first_group.size() < lines.tasks.size() && static_cast<int>(at) == lines.tasks[first_group.size()])
-      first_group.push_back(static_cast<int>(g));
-    for (int s = each.forward_begin; s < each.forward_end; ++s)
-      at += static_cast<std::size_t>(lines.forward[static_cast<std::size_t>(s)].length);
-    ++g;
-  }
-  first_group.push_back(static_cast<int>(lines.groups.size()));
-  lines.tasks = std::move(first_group);
 }
 
 std::size_t CouplingPattern::bytes() const {
-  std::size_t bytes = pieces_.size() * sizeof(CouplingPiece) + blocks_.size() * sizeof(Block) +
-                      chains_.size() * sizeof(Chain) + chain_links_.size() * sizeof(Link);
-  for (const LinePattern& lines : lines_)
-    bytes += (lines.forward.size() + lines.backward.size()) * sizeof(LineSegment);
-  return bytes;
+  return (vertex_.size() + position_.size()) * sizeof(int) + groups_.size() * sizeof(Group) +
+         blocks_.size() * sizeof(Block) + links_.size() * sizeof(Link) + tasks_.size() * sizeof(Task) +
+         phases_.size() * sizeof(int);
 }
 
 }  // namespace muslin

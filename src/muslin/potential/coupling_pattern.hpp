@@ -1,109 +1,109 @@
-// Which vertices of a body are coupled in pairs, in the order in which the inner solver walks them.
+// Which vertices of a body are coupled in pairs, in the order in which the inner solver eliminates them.
 //
-// A lattice's couplings come in runs a+i — b+i of constant b − a, so that they need no index arrays. Vertices
-// are cut into slabs, one task each, and slabs into blocks that fit the first-level cache. A task writes to
-// the vertices of its own slab only: a coupling between two slabs is computed by both. All sizes depend on
-// the pattern alone, hence the same bits for any thread count.
+// Vertices are cut into slabs, eliminated side by side: even slabs upwards, odd ones downwards, so that two
+// of them meet without a gap (a twisted factorisation). Where an odd slab meets the one below, a thin layer
+// waits until both are done; where an even slab begins above an odd one, a thin layer goes first. Inside each
+// of these tasks a vertex has a level, one more than the highest of those it is coupled to and that come
+// before it. Vertices of one level do not depend on each other: 16 of them make a group, one per vector lane.
+//
+// Positions number the vertices in this order, 16 for each group, some of them empty. In a lattice the
+// neighbours of the lanes of a group lie at consecutive positions, with a break now and then: a block of
+// couplings needs two base positions and no index per coupling. The order depends on the pattern alone, hence
+// the same bits for any thread count.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace muslin {
 
-/// Couplings of vertices a + i and b + i, 0 ≤ i < length. `axis` is the lattice axis (0 x, 1 y, 2 z) that
-/// they run along if chains of them are stiff lines of the body, −1 otherwise.
+/// Couplings of vertices a + i and b + i, 0 ≤ i < length.
 struct CouplingRun {
   int kind = 0;  ///< the owner's own number
-  int axis = -1;
   int a = 0, b = 0, length = 0;
-};
-
-/// Part of a run with a in one block and b in one slab. Its coefficients are slots slot … slot + length − 1.
-struct CouplingPiece {
-  int kind = 0;
-  int axis = -1;
-  int a = 0, b = 0, length = 0;  ///< a < b
-  std::int64_t slot = 0;
-  int index = 0;  ///< of the piece
-};
-
-/// A stretch of vertices whose predecessors (or successors) along an axis are consecutive too, or that have
-/// none (other = −1).
-struct LineSegment {
-  int vertex = 0, other = -1, length = 0;
-  int piece = -1;          ///< of the couplings between the two
-  int offset = 0;          ///< of the first coupling in its piece
-  std::int64_t pivot = 0;  ///< place of the first vertex in the order of the groups
-};
-
-/// The lines along one axis, in groups of neighbouring lines.
-struct LinePattern {
-  struct Group {
-    int forward_begin = 0, forward_end = 0;    ///< segments in ascending order, with their predecessors
-    int backward_begin = 0, backward_end = 0;  ///< segments in descending order, with their successors
-  };
-  std::vector<Group> groups;
-  std::vector<LineSegment> forward, backward;
-  std::vector<int> tasks;  ///< task t solves groups tasks[t] … tasks[t+1] − 1
 };
 
 class CouplingPattern {
  public:
+  static constexpr int lanes = 16;
+
+  /// Couplings of one kind between the vertices of a group and earlier ones, at most one per lane.
   struct Block {
-    int begin = 0, end = 0;                    ///< vertices
-    int start_begin = 0, start_end = 0;        ///< vertices first touched by this block
-    int own_begin = 0, own_end = 0;            ///< pieces with both ends in the slab
-    int leaving_begin = 0, leaving_end = 0;    ///< pieces with only a in the slab
-    int entering_begin = 0, entering_end = 0;  ///< entries of entering(), b in this block's slab
+    int kind = 0;
+    int group = 0;
+    int first = 0, second = 0,
+        cut = 0;             ///< lane l's earlier end is at position l + (l < cut ? first : second)
+    std::uint16_t used = 0;  ///< bit l: lane l has a coupling
   };
-  struct Slab {
-    int block_begin = 0, block_end = 0;
-  };
-  struct Chain {
-    int vertex = 0, length = 0;
-  };
-  static constexpr int block_size = 1024;  // vertices
-  static constexpr int lanes = 16;         // chains solved side by side
-
-  CouplingPattern(std::vector<CouplingRun> runs, int vertex_count);
-
-  int vertex_count() const { return vertex_count_; }
-  std::int64_t slot_count() const { return slot_count_; }
-  const std::vector<CouplingPiece>& pieces() const { return pieces_; }
-  const std::vector<Block>& blocks() const { return blocks_; }
-  const std::vector<Slab>& slabs() const { return slabs_; }
-  const std::vector<int>& entering() const { return entering_; }
-  /// Pieces of each slab by the slab of a: slab s has first_piece()[s] … first_piece()[s+1] − 1.
-  const std::vector<int>& first_piece() const { return first_piece_; }
-
-  /// Chains of consecutive vertices (b = a + 1) along axis 0, every vertex in one; longest first, bundle by
-  /// bundle of `lanes`.
-  const std::vector<Chain>& chains() const { return chains_; }
-  /// The couplings of axis-0 chains: piece and offset of that between v and v + 1, −1 where there is none.
+  /// The same couplings seen from their earlier ends: where bit l of used[i] is set, lane l of the group is
+  /// coupled to position l + position[i] by lane l + shift[i] of block[i].
   struct Link {
-    int piece = -1, offset = 0;
+    std::array<int, 2> position{}, block{}, shift{};
+    std::array<std::uint16_t, 2> used{};
   };
-  const std::vector<Link>& chain_links() const { return chain_links_; }
-  /// Lines along axes 1 and 2.
-  const LinePattern& lines(int axis) const { return lines_[axis - 1]; }
+  struct Group {
+    int block_begin = 0, block_end = 0;
+    int link_begin = 0, link_end = 0;
+  };
+  /// Consecutive groups, eliminated in this order.
+  struct Task {
+    int group_begin = 0, group_end = 0;
+  };
+
+  /// `order`, where wanted, receives 16 numbers for each block: which coupling (counted through `runs`) a
+  /// lane has, −1 for none.
+  CouplingPattern(std::span<const CouplingRun> runs, int vertex_count,
+                  std::vector<std::int64_t>* order = nullptr);
+
+  int vertex_count() const { return static_cast<int>(position_.size()); }
+  std::size_t position_count() const { return vertex_.size(); }
+  std::size_t block_count() const { return blocks_.size(); }
+  /// −1 where a position is empty.
+  int vertex(std::size_t position) const { return vertex_[position]; }
+  int position(std::size_t vertex) const { return position_[vertex]; }
+  const std::vector<int>& vertices() const { return vertex_; }
+
+  const std::vector<Group>& groups() const { return groups_; }
+  const std::vector<Block>& blocks() const { return blocks_; }
+  const std::vector<Link>& links() const { return links_; }
+  const std::vector<Task>& tasks() const { return tasks_; }
+  /// Phase p holds tasks phases()[p] … phases()[p+1] − 1, independent of each other.
+  const std::vector<int>& phases() const { return phases_; }
   std::size_t bytes() const;
 
  private:
-  void cut(const std::vector<CouplingRun>& runs);
-  void find_chains();
-  void find_lines(int axis);
+  struct Coupling {
+    int vertex = 0;  // eliminated earlier
+    int kind = 0;    // twice the owner's, plus one where it has the lower index
+    std::int64_t index = 0;
+  };
+  /// Couplings of each vertex with earlier ones: begin[v] … begin[v+1] − 1.
+  struct EarlierEnds {
+    std::vector<std::int64_t> begin;
+    std::vector<Coupling> couplings;
+  };
+  /// The task of each vertex, and whether a task goes downwards.
+  struct Split {
+    std::vector<int> task;
+    std::vector<bool> downwards;
+    std::array<int, 4> phase{};  // first task of each, and the number of tasks
+    bool before(int u, int v) const;
+  };
+  Split split(std::span<const CouplingRun> runs) const;
+  /// `by_count`: vertices of one level by whether they have many couplings, then by index.
+  void arrange(const EarlierEnds& earlier, const Split& split, bool by_count);
+  void make_blocks(const EarlierEnds& earlier, std::vector<std::int64_t>* order);
+  void make_links();
 
-  int vertex_count_;
-  std::int64_t slot_count_ = 0;
-  std::vector<CouplingPiece> pieces_;
+  std::vector<int> vertex_, position_;
+  std::vector<Group> groups_;
   std::vector<Block> blocks_;
-  std::vector<Slab> slabs_;
-  std::vector<int> entering_, first_piece_;
-  std::vector<Chain> chains_;
-  std::vector<Link> chain_links_;
-  LinePattern lines_[2];
+  std::vector<Link> links_;
+  std::vector<Task> tasks_;
+  std::vector<int> phases_;
 };
 
 }  // namespace muslin

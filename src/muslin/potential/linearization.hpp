@@ -1,12 +1,13 @@
 // The Hessian of an incremental potential at one x, as the inner solver works with it: in float.
 //
-//   H = diag(identity) + couplings + block matrices + potentials of any other kind
+//   H = diag(identity) + couplings + K,   K = block matrices + potentials of any other kind
 //
 // Potentials add themselves (Potential::linearize): springs as couplings, shells as block matrices, drags as
 // part of the identity, everything else by its product in double.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -21,14 +22,14 @@ class Potential;
 
 class Linearization {
  public:
-  /// Starts anew with H = M; potentials are added times `scale`. `fixed` vertices are left out of the
-  /// preconditioner's view only: products have rows for them too.
+  /// Starts anew with H = M; potentials are added times `scale`.
   void reset(std::span<const double> masses, std::span<const std::uint8_t> fixed, double scale);
 
   std::size_t size() const { return identity_.size(); }
   double scale() const { return scale_; }
 
-  /// The couplings of this pattern on vertices first, first + 1, …; zero when first asked for.
+  /// The couplings of this pattern on vertices first, first + 1, …; zero when first asked for. A vertex has
+  /// couplings of one pattern only.
   Couplings& couplings(const std::shared_ptr<const CouplingPattern>& pattern, std::size_t first);
   /// The blocks of this pattern on vertices first, first + 1, …; zero when first asked for. What is added
   /// must be symmetric and positive semidefinite.
@@ -40,20 +41,31 @@ class Linearization {
   /// The same, owned until the next `reset`.
   void add_general(std::shared_ptr<const Potential> potential, std::size_t first, ConstVectors x);
 
-  /// Called when all potentials are in: computes the diagonal blocks.
+  /// Called when all potentials are in.
   void finish();
 
-  /// y = H p; returns pᵀy.
-  double product(const FloatVectors& p, FloatVectors& y);
+  /// Leaves out the negative eigenvalues of the couplings.
+  void project();
 
-  /// Projected diagonal blocks xx, xy, xz of `upper` and yy, yz, zz of `lower`; computed by `finish`.
-  const FloatVectors& upper() const { return upper_; }
-  const FloatVectors& lower() const { return lower_; }
-  /// Largest ‖block‖ / mass over free vertices.
-  double stiffest() const { return stiffest_; }
-  const std::uint8_t* fixed() const { return fixed_.data(); }
+  /// Memory for whoever computes couplings and, later, for whoever solves with them: until the next call.
+  std::span<float> workspace(std::size_t count) {
+    if (workspace_.size() < count) workspace_.resize(count);
+    return {workspace_.data(), count};
+  }
+
+  /// Couplings of all vertices in ascending order, empty ones for vertices that have none.
   std::span<const Couplings* const> sets() const { return sets_; }
-  std::span<const BlockMatrix* const> matrices() const { return matrices_; }
+  const float* identity() const { return identity_.data(); }
+  const std::uint8_t* fixed() const { return fixed_.data(); }
+
+  /// Whether K is not zero.
+  bool has_rest() const { return !matrices_.empty() || !generals_.empty(); }
+  /// Positive semidefinite diagonal blocks of K: xx, xy, xz of `upper` and yy, yz, zz of `lower`, #V by 3.
+  const FloatVectors& rest_upper() const { return upper_; }
+  const FloatVectors& rest_lower() const { return lower_; }
+  /// y += K p, #V by 3; returns pᵀK p.
+  double add_rest_product(Floats p, Floats y);
+
   std::size_t bytes() const;
 
  private:
@@ -62,11 +74,13 @@ class Linearization {
     std::size_t first;
     ConstVectors x;
   };
+  void cover_gap(std::size_t begin, std::size_t end);
+  void find_rest_diagonal();
+
   std::span<const double> masses_;
   std::span<const std::uint8_t> fixed_;
   double scale_ = 1;
-  double stiffest_ = 0;
-  Buffer<float> identity_;
+  Buffer<float> identity_, workspace_;
   std::vector<std::unique_ptr<Couplings>> storage_;  // reused from step to step
   std::vector<const Couplings*> sets_;               // of this x
   std::vector<std::unique_ptr<BlockMatrix>> matrix_storage_;

@@ -1,10 +1,10 @@
-// The linear systems of a step in float: conjugate gradients on the linearised Hessian with lattice lines as
-// preconditioner. What float cannot tell is left to the caller's next iteration in double.
+// The linear systems of a step in float: conjugate gradients on the linearised Hessian between the halves of
+// an incomplete factorisation. What float cannot tell is left to the caller's next iteration in double.
 #pragma once
 
 #include "muslin/potential/linearization.hpp"
 #include "muslin/solver/conjugate_gradient.hpp"
-#include "muslin/solver/line_preconditioner.hpp"
+#include "muslin/solver/split_system.hpp"
 
 namespace muslin {
 
@@ -15,18 +15,21 @@ class InnerSolver {
 
   /// Largest ‖diagonal block‖ / mass. Above `float_limit` masses vanish beside stiffnesses in float and
   /// `solve` must not be used.
-  double stiffest() const { return h_.stiffest(); }
+  double stiffest() const { return stiffest_; }
   static constexpr double float_limit = 3e5;
 
   /// Solves H s = b for the Hessian linearised last, as conjugate_gradient does. `norm` receives √(bᵀP⁻¹b).
+  /// Where the very first direction has negative curvature, H is replaced by its projection until the next
+  /// linearisation, unless NegativeCurvature::pass asks for H as it is.
   LinearReport solve(ConstVectors b, const LinearSettings& settings, Vectors s, double& norm);
 
-  std::size_t bytes() const;
+  std::size_t bytes() const { return h_.bytes() + system_.bytes(); }
 
  private:
   Linearization h_;
-  LinePreconditioner preconditioner_;
-  FloatVectors x_, r_, z_, p_, q_;
+  SplitSystem system_;
+  double stiffest_ = 0;
+  bool projected_ = false;
 };
 
 }  // namespace muslin

@@ -70,7 +70,8 @@ class Stepper {
   std::unique_ptr<Workspace> workspace_;
 };
 
-/// One step by a Stepper of its own. If the report says not converged, `state` is unchanged; it never holds NaN.
+/// One step by a Stepper of its own. If the report says not converged, `state` is unchanged; it never holds
+/// NaN.
 StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                       State& state);
 

@@ -1,0 +1,223 @@
+#include "muslin/solver/split_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "muslin/core/parallel.hpp"
+
+namespace muslin {
+namespace {
+
+using sweep_kernels::lanes;
+using sweep_kernels::matrix_size;
+using sweep_kernels::vector_size;
+
+constexpr std::size_t grain = 512;  // groups
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// The place of position i in a vector by group: x, then y and z `lanes` further on each.
+std::size_t place(std::size_t i) { return i / lanes * vector_size + i % lanes; }
+
+}  // namespace
+
+sweep_kernels::Sweep SplitSystem::sweep(const Part& part, int task) const {
+  const CouplingPattern& pattern = part.couplings->pattern();
+  sweep_kernels::Sweep sweep;
+  sweep.group_begin = pattern.tasks()[at(task)].group_begin;
+  sweep.group_end = pattern.tasks()[at(task)].group_end;
+  sweep.groups = pattern.groups().data();
+  sweep.blocks = pattern.blocks().data();
+  sweep.links = pattern.links().data();
+  sweep.coefficients = part.couplings->coefficients();
+  sweep.units = part.couplings->units();
+  sweep.pivots = pivots_.data() + matrix_size * part.first_group;
+  sweep.excess = excess_.data() + matrix_size * part.first_group;
+  sweep.flat = flat_.data() + static_cast<std::ptrdiff_t>(lanes * part.first_group);
+  return sweep;
+}
+
+/// The sum of body(sweep, offset of the part's vectors) over all tasks, phase by phase.
+template <class Body>
+double SplitSystem::forward(const Body& body) const {
+  double sum = 0;
+  for (const Part& part : parts_) {
+    const std::vector<int>& phases = part.couplings->pattern().phases();
+    for (std::size_t phase = 0; phase + 1 < phases.size(); ++phase) {
+      sum += parallel_sum(at(phases[phase + 1] - phases[phase]), 1, 0.0, [&](std::size_t t, std::size_t) {
+        return body(sweep(part, phases[phase] + static_cast<int>(t)), vector_size * part.first_group);
+      });
+    }
+  }
+  return sum;
+}
+
+template <class Body>
+double SplitSystem::backward(const Body& body) const {
+  double sum = 0;
+  for (const Part& part : parts_) {
+    const std::vector<int>& phases = part.couplings->pattern().phases();
+    for (std::size_t phase = phases.size() - 1; phase-- > 0;) {
+      sum += parallel_sum(at(phases[phase + 1] - phases[phase]), 1, 0.0, [&](std::size_t t, std::size_t) {
+        return body(sweep(part, phases[phase] + static_cast<int>(t)), vector_size * part.first_group);
+      });
+    }
+  }
+  return sum;
+}
+
+/// body(vertex, position among all); −1 for an empty position. `by_vertex` is what will be read or written
+/// there: the order of elimination goes through it in as many strides as a level has vertices, which
+/// processors do not foresee.
+template <class Value, class Body>
+void SplitSystem::for_each_vertex(const Value* by_vertex, const Body& body) const {
+  constexpr std::size_t ahead = 64;
+  for (const Part& part : parts_) {
+    const CouplingPattern& pattern = part.couplings->pattern();
+    const std::int64_t first = static_cast<std::int64_t>(part.couplings->first());
+    parallel_for(pattern.groups().size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin * lanes; i < end * lanes; ++i) {
+        const int v = pattern.vertex(i), next = pattern.vertex(std::min(i + ahead, end * lanes - 1));
+        if (next >= 0) __builtin_prefetch(by_vertex + first + next);
+        body(v < 0 ? -1 : first + v, part.first_group * lanes + i);
+      }
+    });
+  }
+}
+
+double SplitSystem::factor(Linearization& h) {
+  h_ = &h;
+  parts_.clear();
+  group_count_ = 0;
+  for (const Couplings* set : h.sets()) {
+    parts_.push_back({set, group_count_});
+    group_count_ += set->pattern().groups().size();
+  }
+  const std::size_t positions = lanes * group_count_;
+  identity_.resize(positions);
+  pivots_.resize(6 * positions);
+  excess_.resize(6 * positions);
+  rest_.resize(h.has_rest() ? 6 * positions : 0);
+  vectors_ = h.workspace(15 * positions);
+  if (flat_.size() != positions) {  // empty groups between tasks are read, but never written
+    flat_.resize(positions);
+    for (float* flat : {flat_.data().x, flat_.data().y, flat_.data().z}) std::fill_n(flat, positions, 0.0F);
+  }
+  free_.assign(group_count_, 0);
+
+  const float* const identity = h.identity();
+  const std::uint8_t* const fixed = h.fixed();
+  const Floats upper = h.rest_upper().data(), lower = h.rest_lower().data();
+  for_each_vertex(identity, [&](std::int64_t v, std::size_t i) {
+    identity_.data()[i] = v < 0 ? 0 : identity[v];
+    if (v >= 0 && fixed[v] == 0)
+      free_[i / lanes] = static_cast<std::uint16_t>(free_[i / lanes] | 1U << i % lanes);
+    if (!h.has_rest()) return;
+    const float* const from[6] = {upper.x, upper.y, upper.z, lower.x, lower.y, lower.z};
+    for (std::size_t k = 0; k < 6; ++k)
+      rest_.data()[i / lanes * matrix_size + k * lanes + i % lanes] = v < 0 ? 0 : from[k][v];
+  });
+
+  // M by position, for the neighbours: where the vectors will be.
+  float* const m = vectors_.data();
+  std::memset(m, 0, 6 * positions * sizeof(float));
+  const Floats m_upper = {m, m + positions, m + 2 * positions};
+  const Floats m_lower = {m + 3 * positions, m + 4 * positions, m + 5 * positions};
+  struct Largest {
+    float value = 0;
+    Largest operator+(const Largest& other) const { return {std::max(value, other.value)}; }
+  };
+  Largest stiffest;
+  for (const Part& part : parts_) {
+    const auto first = static_cast<std::ptrdiff_t>(lanes * part.first_group);
+    sweep_kernels::Diagonal diagonal;
+    diagonal.identity = identity_.data() + first;
+    diagonal.free = free_.data() + part.first_group;
+    diagonal.rest = h.has_rest() ? rest_.data() + 6 * first : nullptr;
+    const std::vector<int>& phases = part.couplings->pattern().phases();
+    for (std::size_t phase = 0; phase + 1 < phases.size(); ++phase) {
+      const auto tasks = at(phases[phase + 1] - phases[phase]);
+      stiffest = stiffest + parallel_sum(tasks, 1, Largest{}, [&](std::size_t t, std::size_t) {
+                   return Largest{sweep_kernels::kernels().factor(
+                       sweep(part, phases[phase] + static_cast<int>(t)), diagonal, upper + first,
+                       lower + first, pivots_.data() + 6 * first, excess_.data() + 6 * first)};
+                 });
+    }
+  }
+  return std::sqrt(static_cast<double>(stiffest.value));
+}
+
+double SplitSystem::start(ConstVectors b, double scale) {
+  const std::size_t size = vectors_.size() / 5;
+  float* const r = vectors_.data();
+  for_each_vertex(b.data(), [&](std::int64_t v, std::size_t i) {
+    for (int c = 0; c < 3; ++c)
+      r[place(i) + at(c) * lanes] = v < 0 ? 0 : static_cast<float>(scale * b[at(v)][c]);
+  });
+  std::memset(r + size, 0, 2 * size * sizeof(float));
+  return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
+    return sweep_kernels::kernels().solve_forward(sweep, r + offset);
+  });
+}
+
+double SplitSystem::direction(double alpha, double beta) {
+  const std::size_t size = vectors_.size() / 5;
+  float* const r = vectors_.data();
+  float *const p = r + size, *const x = p + size, *const e = x + size, *const g = e + size;
+  const double curvature = backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
+    return sweep_kernels::kernels().direction(sweep, static_cast<float>(alpha), static_cast<float>(beta),
+                                              r + offset, x + offset, p + offset, e + offset, g + offset);
+  });
+  return h_->has_rest() ? curvature + add_rest_product() : curvature;
+}
+
+/// e += K t; returns tᵀK t.
+double SplitSystem::add_rest_product() {
+  t_.resize(h_->size());
+  product_.resize(h_->size());
+  const Floats from = flat_.data(), t = t_.data(), y = product_.data();
+  for_each_vertex(t.x, [&](std::int64_t v, std::size_t i) {
+    if (v < 0) return;
+    t.x[v] = from.x[i], t.y[v] = from.y[i], t.z[v] = from.z[i];
+    y.x[v] = y.y[v] = y.z[v] = 0;
+  });
+  const double curvature = h_->add_rest_product(t, y);
+  float* const e = vectors_.data() + 3 * (vectors_.size() / 5);
+  for_each_vertex(y.x, [&](std::int64_t v, std::size_t i) {
+    if (v < 0) return;
+    float* const to = e + place(i);
+    to[0] += y.x[v], to[lanes] += y.y[v], to[2 * lanes] += y.z[v];
+  });
+  return curvature;
+}
+
+double SplitSystem::residual(double alpha) {
+  const std::size_t size = vectors_.size() / 5;
+  float* const r = vectors_.data();
+  const float *const e = r + 3 * size, *const g = e + size;
+  return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
+    return sweep_kernels::kernels().residual(sweep, static_cast<float>(alpha), e + offset, g + offset,
+                                             r + offset);
+  });
+}
+
+void SplitSystem::solution(double alpha, double scale, Vectors s) {
+  const std::size_t size = vectors_.size() / 5;
+  const float *const p = vectors_.data() + size, *const x = p + size;
+  backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
+    sweep_kernels::kernels().solve_backward(sweep, static_cast<float>(alpha), x + offset, p + offset);
+    return 0.0;
+  });
+  const Floats t = flat_.data();
+  for_each_vertex(s.data(), [&](std::int64_t v, std::size_t i) {
+    if (v >= 0) s[at(v)] = scale * Vec3(t.x[i], t.y[i], t.z[i]);
+  });
+}
+
+std::size_t SplitSystem::bytes() const {
+  return identity_.bytes() + rest_.bytes() + pivots_.bytes() + excess_.bytes() + flat_.bytes() +
+         free_.capacity() * sizeof(free_[0]) + t_.bytes() + product_.bytes();
+}
+
+}  // namespace muslin

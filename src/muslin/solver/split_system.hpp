@@ -1,0 +1,70 @@
+// The Hessian between the halves of an incomplete factorisation, for conjugate gradients without a separate
+// preconditioner.
+//
+// H = L + A + Lᵀ + K in the order of elimination of a CouplingPattern: A the diagonal blocks, L the couplings
+// with earlier vertices, K whatever has no couplings. With D_v = A⁺_v − Σ B⁺ D_u⁻¹ B⁺ over the earlier
+// neighbours u of v (A⁺ and B⁺ projected to positive semidefinite: the D of a diagonal incomplete
+// factorisation; Pommerell 1992, Saad 2003, § 10.3) and D = G Gᵀ, the matrix F = (D + L) G⁻ᵀ makes
+// F Fᵀ ≈ H, exactly so on a line. Since H = (D + L) + (D + Lᵀ) + (A − 2D) + K, the product with
+//
+//   Ĥ = F⁻¹ H F⁻ᵀ,   Ĥ p = g + F⁻¹ ((A − D) t − u + K t),   t = F⁻ᵀ p,
+//
+// costs one sweep backwards (t, u = −Lᵀ t, g = Gᵀ t) and one forwards: hardly more than with H itself
+// (Eisenstat 1981). docs/theory/split-system.md has the derivation. Held vertices have G⁻¹ = 0 and stay
+// out.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "muslin/potential/linearization.hpp"
+#include "muslin/solver/sweep_kernels.hpp"
+
+namespace muslin {
+
+/// Everything belongs to the Linearization of the last call of `factor`, which must not change until the
+/// next.
+class SplitSystem {
+ public:
+  /// Returns the largest ‖A⁺_v‖ / (mass and drag of v) over free vertices.
+  double factor(Linearization& h);
+
+  /// r̂ = F⁻¹ (scale · b), x̂ = p̂ = 0; b is #V by 3. Returns r̂ᵀr̂ = scale² bᵀ (F Fᵀ)⁻¹ b.
+  double start(ConstVectors b, double scale);
+  /// x̂ += alpha p̂, then p̂ = r̂ + beta p̂; returns p̂ᵀĤp̂.
+  double direction(double alpha, double beta);
+  /// r̂ −= alpha Ĥp̂; returns r̂ᵀr̂.
+  double residual(double alpha);
+  /// s = scale · F⁻ᵀ (x̂ + alpha p̂), #V by 3.
+  void solution(double alpha, double scale, Vectors s);
+
+  std::size_t bytes() const;
+
+ private:
+  /// The part of one set of couplings: its first group among all.
+  struct Part {
+    const Couplings* couplings = nullptr;
+    std::size_t first_group = 0;
+  };
+  sweep_kernels::Sweep sweep(const Part& part, int task) const;
+  template <class Body>
+  double forward(const Body& body) const;
+  template <class Body>
+  double backward(const Body& body) const;
+  template <class Value, class Body>
+  void for_each_vertex(const Value* by_vertex, const Body& body) const;
+  double add_rest_product();
+
+  Linearization* h_ = nullptr;
+  std::vector<Part> parts_;
+  std::size_t group_count_ = 0;
+  Buffer<float> identity_, rest_, pivots_, excess_;
+  std::vector<std::uint16_t> free_;
+  std::span<float> vectors_;  // r̂, p̂, x̂, e, g by group; memory of h_
+  FloatVectors flat_;
+  FloatVectors t_, product_;  // t and K t by vertex
+};
+
+}  // namespace muslin

@@ -1,0 +1,58 @@
+// The arithmetic of SplitSystem on groups of 16 vertices, compiled for several instruction sets. All give the
+// same bits.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "muslin/potential/coupling_pattern.hpp"
+#include "muslin/potential/float_vectors.hpp"
+
+namespace muslin::sweep_kernels {
+
+inline constexpr int lanes = CouplingPattern::lanes;
+inline constexpr int vector_size = 3 * lanes;  ///< floats of a group in a vector: 16 x, 16 y, 16 z
+inline constexpr int matrix_size = 6 * lanes;  ///< xx, yx, zx, yy, zy, zz by 16
+
+/// Groups group_begin … group_end − 1 of a pattern. Vectors by group, `flat` by position.
+struct Sweep {
+  int group_begin = 0, group_end = 0;
+  const CouplingPattern::Group* groups = nullptr;
+  const CouplingPattern::Block* blocks = nullptr;
+  const CouplingPattern::Link* links = nullptr;
+  const std::uint32_t* coefficients = nullptr;
+  const float* units = nullptr;
+  const float* pivots = nullptr;  ///< M, lower triangular, by group
+  const float* excess = nullptr;  ///< A − D by group
+  Floats flat;                    ///< what neighbours read
+};
+
+struct Diagonal {
+  const float* identity = nullptr;      ///< by position
+  const std::uint16_t* free = nullptr;  ///< by group, bit l: lane l has a vertex that is free to move
+  const float* rest = nullptr;          ///< by group, blocks that D has besides; null if there are none
+};
+
+struct Kernels {
+  /// M and A − D of each group, in ascending order; `upper` (m00, m10, m20) and `lower` (m11, m21, m22) by
+  /// position receive M for the groups to come. Returns the largest ‖A‖² / identity² of a free vertex.
+  float (*factor)(const Sweep& sweep, const Diagonal& diagonal, Floats upper, Floats lower, float* pivots,
+                  float* excess);
+  /// r = F⁻¹ r; returns rᵀr.
+  double (*solve_forward)(const Sweep& sweep, float* r);
+  /// x += alpha p, p = r + beta p, flat = t = F⁻ᵀ p, e = (A − D) t − u, g = p + M u, with u what the later
+  /// neighbours' couplings make of t. Returns pᵀg + tᵀe = tᵀH t.
+  double (*direction)(const Sweep& sweep, float alpha, float beta, const float* r, float* x, float* p,
+                      float* e, float* g);
+  /// r −= alpha (g + F⁻¹ e); returns rᵀr.
+  double (*residual)(const Sweep& sweep, float alpha, const float* e, const float* g, float* r);
+  /// flat = F⁻ᵀ (x + alpha p).
+  void (*solve_backward)(const Sweep& sweep, float alpha, const float* x, const float* p);
+};
+
+/// The best for this processor.
+const Kernels& kernels();
+/// All that this processor can run, the plainest first: tests compare their bits.
+std::span<const Kernels* const> all_kernels();
+
+}  // namespace muslin::sweep_kernels

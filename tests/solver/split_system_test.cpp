@@ -1,0 +1,212 @@
+// The split system against its definition in dense matrices, and the same bits from every kernel.
+#include "muslin/solver/split_system.hpp"
+
+#include <cstring>
+
+#include "support/lattice_box.hpp"
+#include "support/linearized_product.hpp"
+#include "support/potential_battery.hpp"
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "muslin/core/parallel.hpp"
+#include "muslin/energy/spring_energy.hpp"
+
+namespace muslin {
+namespace {
+
+/// A crumpled box of springs, some of its vertices held, and a few vertices more that nothing couples.
+class SplitSystemTest : public testing::TestWithParam<Vec3i> {
+ protected:
+  static constexpr std::size_t loose = 3;
+  void SetUp() override {
+    const Lattice lattice = test::box_lattice(GetParam());
+    springs_ = std::make_unique<SpringEnergy>(build_springs(lattice, Bracing::kuhn), 1,
+                                              std::array<double, 3>{20000, 100, 100});
+    x_ = test::rest_positions(lattice);
+    const std::vector<Vec3> noise = test::random_vectors(x_.size(), 0.2, 4);
+    for (std::size_t v = 0; v < x_.size(); ++v) x_[v] += noise[v];
+    body_ = x_.size();
+    x_.resize(body_ + loose, Vec3(9, 9, 9));
+    masses_.assign(x_.size(), 2);
+    for (std::size_t v = 0; v < x_.size(); v += 3) masses_[v] = 5;
+    fixed_.assign(x_.size(), 0);
+    fixed_[0] = fixed_[body_ / 2] = 1;
+    h_.reset(masses_, fixed_, 1.0 / 240 / 240);
+    springs_->linearize(std::span(x_).first(body_), h_, 0);
+    h_.finish();
+  }
+  std::vector<Vec3> free_vectors(unsigned seed) const {
+    std::vector<Vec3> p = test::random_vectors(x_.size(), 1, seed);
+    for (std::size_t v = 0; v < p.size(); ++v)
+      if (fixed_[v] != 0) p[v].setZero();
+    return p;
+  }
+  double dot(ConstVectors a, ConstVectors b) const {
+    double sum = 0;
+    for (std::size_t v = 0; v < a.size(); ++v)
+      if (fixed_[v] == 0) sum += a[v].dot(b[v]);
+    return sum;
+  }
+
+  std::unique_ptr<SpringEnergy> springs_;
+  std::vector<Vec3> x_;
+  std::size_t body_ = 0;
+  std::vector<double> masses_;
+  std::vector<std::uint8_t> fixed_;
+  Linearization h_;
+};
+
+TEST_P(SplitSystemTest, PreconditionsByASymmetricPositiveDefiniteMatrixAndMultipliesByTheHessian) {
+  SplitSystem system;
+  system.factor(h_);
+  const std::vector<Vec3> b = free_vectors(1), c = free_vectors(2);
+  std::vector<Vec3> s(b.size()), r(c.size());
+  // s = (F Fᵀ)⁻¹ b, its quadratic form and that of H.
+  const double rr = system.start(b, 1);
+  const double curvature = system.direction(0, 0);
+  system.solution(1, 1, s);
+  EXPECT_GT(rr, 0);
+  EXPECT_NEAR(rr, dot(b, s), 1e-4 * rr);
+  const std::vector<Vec3> hs = test::product(h_, s);
+  EXPECT_NEAR(curvature, dot(s, hs), 1e-4 * rr);
+  // F⁻¹ (b − 0.3 H s) by recurrence and anew.
+  const double by_recurrence = system.residual(0.3);
+  std::vector<Vec3> rest = b;
+  for (std::size_t v = 0; v < b.size(); ++v)
+    rest[v] = fixed_[v] != 0 ? Vec3(Vec3::Zero()) : Vec3(b[v] - 0.3 * hs[v]);
+  EXPECT_NEAR(by_recurrence, system.start(rest, 1), 1e-4 * rr);
+  // Symmetric: bᵀ P c = cᵀ P b.
+  system.start(c, 1);
+  system.direction(0, 0);
+  system.solution(1, 1, r);
+  EXPECT_NEAR(dot(b, r), dot(c, s), 1e-4 * rr);
+  for (std::size_t v = 0; v < b.size(); ++v) {
+    if (fixed_[v] != 0) {
+      EXPECT_EQ(s[v], Vec3::Zero());
+    }
+    if (v >= body_) {
+      EXPECT_LE((s[v] - b[v] / masses_[v]).norm(), 1e-6);
+    }
+  }
+}
+
+TEST_P(SplitSystemTest, HasTheSameBitsForAnyThreadCount) {
+  const std::vector<Vec3> b = free_vectors(1);
+  std::vector<std::vector<Vec3>> solutions;
+  for (const int threads : {1, 2, 7}) {
+    set_thread_count(threads);
+    SplitSystem system;
+    system.factor(h_);
+    double rr = system.start(b, 1), alpha = 0, beta = 0;
+    for (int i = 0; i < 5; ++i) {
+      alpha = rr / system.direction(alpha, beta);
+      const double next = system.residual(alpha);
+      beta = next / rr, rr = next;
+    }
+    solutions.emplace_back(b.size());
+    system.solution(alpha, 1, solutions.back());
+  }
+  set_thread_count(0);
+  for (const auto& s : solutions)
+    EXPECT_EQ(std::memcmp(s.data(), solutions[0].data(), s.size() * sizeof(Vec3)), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Boxes, SplitSystemTest,
+                         testing::Values(Vec3i(1, 1, 1), Vec3i(12, 5, 1), Vec3i(6, 7, 8), Vec3i(100, 60, 1)));
+
+TEST(SplitSystem, IsExactOnALine) {
+  // A chain of vertices with couplings B = s sᵀ: its factorisation has no fill, so that one iteration solves.
+  const int count = 200;
+  const auto pattern =
+      std::make_shared<const CouplingPattern>(std::vector<CouplingRun>{{0, 0, 1, count - 1}}, count);
+  const std::vector<double> masses(count, 0.01);
+  std::vector<std::uint8_t> fixed(count, 0);
+  fixed[70] = 1;
+  Linearization h;
+  h.reset(masses, fixed, 1);
+  Couplings& couplings = h.couplings(pattern, 0);
+  for (std::size_t b = 0; b < pattern->block_count(); ++b) {
+    float sx[16] = {}, sy[16] = {}, sz[16] = {}, t[16] = {};
+    for (int l = 0; l < 16; ++l) {
+      if ((pattern->blocks()[b].used >> l & 1) == 0) continue;
+      sx[l] = 1, sy[l] = 0.5F, sz[l] = -0.25F, t[l] = 0.125F;
+    }
+    couplings.store(b, 1, sx, sy, sz, t);
+  }
+  h.finish();
+  SplitSystem system;
+  system.factor(h);
+  std::vector<Vec3> b = test::random_vectors(count, 1, 1);
+  b[70].setZero();
+  const double rr = system.start(b, 1);
+  const double alpha = rr / system.direction(0, 0);
+  EXPECT_NEAR(alpha, 1, 1e-4);
+  EXPECT_LE(system.residual(alpha), 1e-6 * rr);
+}
+
+TEST(SweepKernels, AllHaveTheSameBits) {
+  const Lattice lattice = test::box_lattice({20, 12, 2});
+  const SpringEnergy springs(build_springs(lattice, Bracing::full), 1, {20000, 100, 100});
+  std::vector<Vec3> x = test::rest_positions(lattice);
+  const std::vector<Vec3> noise = test::random_vectors(x.size(), 0.2, 4);
+  for (std::size_t v = 0; v < x.size(); ++v) x[v] += noise[v];
+  const std::vector<double> masses(x.size(), 1);
+  const std::vector<std::uint8_t> fixed(x.size(), 0);
+  Linearization h;
+  h.reset(masses, fixed, 1e-4);
+  springs.linearize(x, h, 0);
+  h.finish();
+  ASSERT_EQ(h.sets().size(), 1U);
+  const Couplings& couplings = *h.sets()[0];
+  const CouplingPattern& pattern = couplings.pattern();
+  const std::size_t positions = pattern.position_count();
+
+  std::vector<std::vector<float>> results;
+  for (const sweep_kernels::Kernels* kernels : sweep_kernels::all_kernels()) {
+    std::vector<float> identity(positions, 0), pivots(6 * positions), excess(6 * positions), m(6 * positions),
+        flat(3 * positions), vectors(15 * positions);
+    std::vector<std::uint16_t> free(pattern.groups().size());
+    for (std::size_t i = 0; i < positions; ++i) {
+      if (pattern.vertex(i) < 0) continue;
+      identity[i] = 1;
+      free[i / 16] = static_cast<std::uint16_t>(free[i / 16] | 1U << i % 16);
+    }
+    sweep_kernels::Sweep sweep;
+    sweep.group_begin = pattern.tasks()[0].group_begin;
+    sweep.group_end = pattern.tasks()[0].group_end;
+    ASSERT_EQ(pattern.tasks().size(), 1U);
+    sweep.groups = pattern.groups().data();
+    sweep.blocks = pattern.blocks().data();
+    sweep.links = pattern.links().data();
+    sweep.coefficients = couplings.coefficients();
+    sweep.units = couplings.units();
+    sweep.pivots = pivots.data();
+    sweep.excess = excess.data();
+    sweep.flat = {flat.data(), flat.data() + positions, flat.data() + 2 * positions};
+    sweep_kernels::Diagonal diagonal;
+    diagonal.identity = identity.data();
+    diagonal.free = free.data();
+    const Floats upper = {m.data(), m.data() + positions, m.data() + 2 * positions};
+    const Floats lower = upper + static_cast<std::ptrdiff_t>(3 * positions);
+    const float stiffest = kernels->factor(sweep, diagonal, upper, lower, pivots.data(), excess.data());
+    float* const r = vectors.data();
+    float *const p = r + 3 * positions, *const y = p + 3 * positions, *const e = y + 3 * positions,
+                 *const g = e + 3 * positions;
+    for (std::size_t i = 0; i < 3 * positions; ++i) r[i] = static_cast<float>(i % 97) - 48.0F;
+    const double rr = kernels->solve_forward(sweep, r);
+    const double curvature = kernels->direction(sweep, 0.5F, 0.25F, r, y, p, e, g);
+    const double next = kernels->residual(sweep, 0.3F, e, g, r);
+    kernels->solve_backward(sweep, 0.1F, y, p);
+    std::vector<float> result = {stiffest, static_cast<float>(rr), static_cast<float>(curvature),
+                                 static_cast<float>(next)};
+    for (const auto* part : {&pivots, &excess, &flat, &vectors})
+      result.insert(result.end(), part->begin(), part->end());
+    results.push_back(std::move(result));
+  }
+  for (const auto& result : results)
+    EXPECT_EQ(std::memcmp(result.data(), results[0].data(), result.size() * sizeof(float)), 0);
+}
+
+}  // namespace
+}  // namespace muslin

@@ -1,0 +1,55 @@
+// H p as a Linearization has stored H, coupling by coupling in double: what faster ways are tested against.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "muslin/potential/linearization.hpp"
+
+namespace muslin::test {
+
+/// body(a, b, B) for every coupling of a linearisation: B = s sᵀ + t I between vertices a and b.
+template <class Body>
+void for_each_coupling(const Linearization& h, const Body& body) {
+  constexpr auto lanes = static_cast<std::size_t>(CouplingPattern::lanes);
+  for (const Couplings* set : h.sets()) {
+    const CouplingPattern& pattern = set->pattern();
+    for (std::size_t b = 0; b < pattern.block_count(); ++b) {
+      const CouplingPattern::Block& block = pattern.blocks()[b];
+      float sx[lanes], sy[lanes], sz[lanes], t[lanes];
+      set->load(b, 1, sx, sy, sz, t);
+      for (std::size_t l = 0; l < lanes; ++l) {
+        if ((block.used >> l & 1) == 0) continue;
+        const int base = static_cast<int>(l) < block.cut ? block.first : block.second;
+        const int earlier = pattern.vertex(l + static_cast<std::size_t>(base));
+        const int later = pattern.vertex(static_cast<std::size_t>(block.group) * lanes + l);
+        const Vec3 s(sx[l], sy[l], sz[l]);
+        const Mat3 matrix = s * s.transpose() + static_cast<double>(t[l]) * Mat3::Identity();
+        body(set->first() + static_cast<std::size_t>(earlier), set->first() + static_cast<std::size_t>(later),
+             matrix);
+      }
+    }
+  }
+}
+
+inline std::vector<Vec3> product(Linearization& h, ConstVectors p) {
+  std::vector<Vec3> y(p.size());
+  for (std::size_t v = 0; v < p.size(); ++v) y[v] = static_cast<double>(h.identity()[v]) * p[v];
+  for_each_coupling(h, [&](std::size_t a, std::size_t b, const Mat3& block) {
+    const Vec3 f = block * (p[b] - p[a]);
+    y[a] -= f, y[b] += f;
+  });
+  if (!h.has_rest()) return y;
+  FloatVectors from, to;
+  from.resize(p.size()), to.resize(p.size());
+  const Floats f = from.data(), t = to.data();
+  for (std::size_t v = 0; v < p.size(); ++v) {
+    f.x[v] = static_cast<float>(p[v].x()), f.y[v] = static_cast<float>(p[v].y());
+    f.z[v] = static_cast<float>(p[v].z()), t.x[v] = t.y[v] = t.z[v] = 0;
+  }
+  h.add_rest_product(f, t);
+  for (std::size_t v = 0; v < p.size(); ++v) y[v] += Vec3(t.x[v], t.y[v], t.z[v]);
+  return y;
+}
+
+}  // namespace muslin::test
