@@ -6,6 +6,7 @@
 #include <random>
 
 #include "support/cloth_grid.hpp"
+#include "support/linearized_product.hpp"
 #include "support/potential_battery.hpp"
 #include <gtest/gtest.h>
 
@@ -172,18 +173,9 @@ TEST(ContactPotential, LinearizesToItsHessian) {
   linearization.finish();
   const std::vector<Vec3> p = test::random_vectors(scene.q.size(), 1, 4);
   const std::vector<Vec3> expected = test::hessian_product(w, scene.q, p);
-  FloatVectors in, out;
-  in.resize(p.size());
-  out.resize(p.size());
-  for (std::size_t v = 0; v < p.size(); ++v) {
-    in.data().x[v] = static_cast<float>(p[v].x());
-    in.data().y[v] = static_cast<float>(p[v].y());
-    in.data().z[v] = static_cast<float>(p[v].z());
-  }
-  linearization.product(in, out);
+  const std::vector<Vec3> product = test::product(linearization, p);
   for (std::size_t v = 0; v < p.size(); ++v)
-    EXPECT_LT((Vec3(out.data().x[v], out.data().y[v], out.data().z[v]) - expected[v]).norm(),
-              1e-4 * (1 + test::norm(expected)));
+    EXPECT_LT((product[v] - expected[v]).norm(), 1e-4 * (1 + test::norm(expected)));
 }
 
 TEST(ContactPotential, CountsAContactOnceWhereverItLies) {

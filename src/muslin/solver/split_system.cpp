@@ -140,8 +140,8 @@ double SplitSystem::factor(Linearization& h) {
       const auto tasks = at(phases[phase + 1] - phases[phase]);
       stiffest = stiffest + parallel_sum(tasks, 1, Largest{}, [&](std::size_t t, std::size_t) {
                    return Largest{sweep_kernels::kernels().factor(
-                       sweep(part, phases[phase] + static_cast<int>(t)), diagonal, upper + first,
-                       lower + first, pivots_.data() + 6 * first, excess_.data() + 6 * first)};
+                       sweep(part, phases[phase] + static_cast<int>(t)), diagonal, m_upper + first,
+                       m_lower + first, pivots_.data() + 6 * first, excess_.data() + 6 * first)};
                  });
     }
   }
