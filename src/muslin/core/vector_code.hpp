@@ -9,6 +9,11 @@
 #else
 #define MUSLIN_VECTOR_CODE
 #endif
+/// Defined where code is compiled for several instruction sets.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define MUSLIN_BY_PROCESSOR
+#endif
 #define MUSLIN_INLINE [[gnu::always_inline]] inline
 
 /// Before a loop: no iteration reads what another one writes.

@@ -11,7 +11,6 @@ namespace muslin {
 namespace {
 
 constexpr int lanes = CouplingPattern::lanes;
-constexpr std::size_t batch = 32;    // blocks computed together
 constexpr std::size_t grain = 1024;  // blocks
 constexpr float shortest = static_cast<float>(shortest_spring);
 
@@ -33,91 +32,74 @@ Columns arrange(const CouplingPattern& pattern, ConstVectors x, Linearization& i
   return {to, to + size, to + 2 * size};
 }
 
-/// Differences between the ends of the couplings of `count` blocks.
-MUSLIN_VECTOR_CODE void edge_vectors(const CouplingPattern::Block* blocks, std::size_t count,
-                                     const double* __restrict x, float* __restrict z) {
-  for (std::size_t b = 0; b < count; ++b) {
-    const CouplingPattern::Block& block = blocks[b];
-    const double* const later = x + lanes * static_cast<std::ptrdiff_t>(block.group);
-    const double *const first = x + block.first, *const second = x + block.second;
-    if (block.cut == 0) {
-      for (int l = 0; l < lanes; ++l) z[l] = static_cast<float>(later[l] - second[l]);
-    } else {
-      for (int l = 0; l < lanes; ++l)
-        z[l] = static_cast<float>(later[l] - (l < block.cut ? first[l] : second[l]));
-    }
-    z += lanes;
-  }
-}
-
+/// Consecutive blocks and where their couplings are.
 struct Batch {
-  alignas(64) float weight[batch * lanes];
-  alignas(64) float zx[batch * lanes], zy[batch * lanes], zz[batch * lanes];
-  alignas(64) float sx[batch * lanes], sy[batch * lanes], sz[batch * lanes], t[batch * lanes];
+  const CouplingPattern::Block* blocks = nullptr;
+  std::size_t count = 0;
+  const BlockSprings::Type* types = nullptr;
+  const float* weights = nullptr;
+  Columns x;
+  std::uint32_t* words = nullptr;
+  float* units = nullptr;
+};
+struct Kernels {
+  void (*spring_couplings)(const Batch& batch);
+  void (*dashpot_couplings)(const Batch& batch);
 };
 
-/// z in zx, zy, zz; s and t receive the couplings.
-MUSLIN_VECTOR_CODE void spring_couplings(const CouplingPattern::Block* blocks, std::size_t count,
-                                         const BlockSprings::Type* types, Batch& batch) {
-  for (std::size_t b = 0; b < count; ++b) {
-    const float k = types[blocks[b].kind].k, rest = types[blocks[b].kind].rest, least = shortest * rest;
-    for (std::size_t i = b * lanes; i < (b + 1) * lanes; ++i) {
-      const float zx = batch.zx[i], zy = batch.zy[i], zz = batch.zz[i];
-      const float length = std::sqrt(zx * zx + zy * zy + zz * zz);
-      const float k_i = k * batch.weight[i];
-      const float per_length = 1.0F / length;
-      const float ratio = length > least ? rest * per_length : 0.0F;
-      const float scaled = std::sqrt(k_i * ratio) * per_length;
-      const float scale = length > least ? scaled : 0.0F;
-      batch.sx[i] = scale * zx, batch.sy[i] = scale * zy, batch.sz[i] = scale * zz;
-      batch.t[i] = k_i * (1.0F - ratio);
-    }
-  }
+namespace plain {
+#include "muslin/energy/spring_couplings.inc"
+}  // namespace plain
+}  // namespace
+
+#ifdef MUSLIN_BY_PROCESSOR
+#pragma GCC push_options
+#pragma GCC target("arch=x86-64-v3")
+namespace {
+namespace avx2 {
+#include "muslin/energy/spring_couplings.inc"
+}  // namespace avx2
+}  // namespace
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("arch=x86-64-v4")
+namespace {
+namespace avx512 {
+#include "muslin/energy/spring_couplings.inc"
+}  // namespace avx512
+}  // namespace
+#pragma GCC pop_options
+#endif
+
+namespace {
+
+const Kernels& kernels() {
+#ifdef MUSLIN_BY_PROCESSOR
+  static const Kernels& best = __builtin_cpu_supports("x86-64-v4")   ? avx512::table
+                               : __builtin_cpu_supports("x86-64-v3") ? avx2::table
+                                                                     : plain::table;
+  return best;
+#else
+  return plain::table;
+#endif
 }
 
-MUSLIN_VECTOR_CODE void dashpot_couplings(const CouplingPattern::Block* blocks, std::size_t count,
-                                          const BlockSprings::Type* types, Batch& batch) {
-  for (std::size_t b = 0; b < count; ++b) {
-    const float k = types[blocks[b].kind].k;
-    for (std::size_t i = b * lanes; i < (b + 1) * lanes; ++i) {
-      const float zx = batch.zx[i], zy = batch.zy[i], zz = batch.zz[i];
-      const float sx = batch.sx[i], sy = batch.sy[i], sz = batch.sz[i];
-      const float square = sx * sx + sy * sy + sz * sz;
-      const bool along_s = square > 0.0F;
-      const float base = along_s ? square : zx * zx + zy * zy + zz * zz;
-      const float grown = std::sqrt((square + k * batch.weight[i]) / base);
-      const float scale = base > 0.0F ? grown : 0.0F;
-      batch.sx[i] = scale * (along_s ? sx : zx);
-      batch.sy[i] = scale * (along_s ? sy : zy);
-      batch.sz[i] = scale * (along_s ? sz : zz);
-    }
-  }
-}
-
-/// body(first block, count, batch) for all blocks, with z and the weights in the batch.
-template <class Body>
-void for_each_batch(const BlockSprings& springs, ConstVectors x, Linearization& into, const Body& body) {
+template <class Kernel>
+void for_each_batch(const BlockSprings& springs, ConstVectors x, std::size_t first, Linearization& into,
+                    const Kernel& kernel) {
+  Couplings& couplings = into.couplings(springs.pattern, first);
   const CouplingPattern& pattern = *springs.pattern;
   const Columns at = arrange(pattern, x, into);
   parallel_for(pattern.block_count(), grain, [&](std::size_t begin, std::size_t end) {
-    Batch buffers;
-    for (std::size_t block = begin; block < end; block += batch) {
-      const std::size_t count = std::min(batch, end - block);
-      const CouplingPattern::Block* const blocks = pattern.blocks().data() + block;
-      for (std::size_t b = 0; b < count; ++b) {
-        for (std::size_t l = 0; l < lanes; ++l) {
-          const bool used = (blocks[b].used >> l & 1) != 0;
-          buffers.weight[b * lanes + l] = !used ? 0.0F
-                                          : springs.weights == nullptr
-                                              ? 1.0F
-                                              : springs.weights[(block + b) * lanes + l];
-        }
-      }
-      edge_vectors(blocks, count, at.x, buffers.zx);
-      edge_vectors(blocks, count, at.y, buffers.zy);
-      edge_vectors(blocks, count, at.z, buffers.zz);
-      body(block, count, buffers);
-    }
+    Batch batch;
+    batch.blocks = pattern.blocks().data() + begin;
+    batch.count = end - begin;
+    batch.types = springs.types.data();
+    batch.weights = springs.weights != nullptr ? springs.weights + lanes * begin : nullptr;
+    batch.x = at;
+    batch.words = couplings.words(begin);
+    batch.units = couplings.units(begin);
+    kernel(batch);
   });
 }
 
@@ -125,21 +107,12 @@ void for_each_batch(const BlockSprings& springs, ConstVectors x, Linearization& 
 
 void set_spring_couplings(const BlockSprings& springs, ConstVectors x, std::size_t first,
                           Linearization& into) {
-  Couplings& couplings = into.couplings(springs.pattern, first);
-  for_each_batch(springs, x, into, [&](std::size_t block, std::size_t count, Batch& b) {
-    spring_couplings(springs.pattern->blocks().data() + block, count, springs.types.data(), b);
-    couplings.store(block, count, b.sx, b.sy, b.sz, b.t);
-  });
+  for_each_batch(springs, x, first, into, kernels().spring_couplings);
 }
 
 void add_dashpot_couplings(const BlockSprings& dashpots, ConstVectors x, std::size_t first,
                            Linearization& into) {
-  Couplings& couplings = into.couplings(dashpots.pattern, first);
-  for_each_batch(dashpots, x, into, [&](std::size_t block, std::size_t count, Batch& b) {
-    couplings.load(block, count, b.sx, b.sy, b.sz, b.t);
-    dashpot_couplings(dashpots.pattern->blocks().data() + block, count, dashpots.types.data(), b);
-    couplings.store(block, count, b.sx, b.sy, b.sz, b.t);
-  });
+  for_each_batch(dashpots, x, first, into, kernels().dashpot_couplings);
 }
 
 }  // namespace muslin

@@ -12,7 +12,7 @@ namespace muslin {
 namespace {
 
 constexpr int lanes = Couplings::lanes;
-constexpr int words = 2 * lanes;  // of a block
+constexpr int block_words = 2 * lanes;  // of a block
 constexpr float largest = 32767, upper_half = 65536;
 
 MUSLIN_VECTOR_CODE void load_blocks(const std::uint32_t* __restrict c, const float* __restrict units,
@@ -20,7 +20,7 @@ MUSLIN_VECTOR_CODE void load_blocks(const std::uint32_t* __restrict c, const flo
                                     float* __restrict sz, float* __restrict t) {
   for (std::size_t b = 0; b < count; ++b) {
     const float unit = units[b];
-    const std::uint32_t* const from = c + b * words;
+    const std::uint32_t* const from = c + b * block_words;
     for (int l = 0; l < lanes; ++l) {
       sx[l] = unit * static_cast<float>(static_cast<std::int32_t>(from[l] << 16));
       sy[l] = unit * static_cast<float>(static_cast<std::int32_t>(from[l] & 0xffff0000U));
@@ -46,7 +46,7 @@ MUSLIN_VECTOR_CODE void store_blocks(std::uint32_t* __restrict c, float* __restr
       for (int l = 0; l < half; ++l) entry[l] = std::max(entry[l], entry[l + half]);
     units[b] = entry[0] / (largest * upper_half);
     const float per_unit = entry[0] > 0 ? largest / entry[0] : 0;
-    std::uint32_t* const to = c + b * words;
+    std::uint32_t* const to = c + b * block_words;
     for (int l = 0; l < lanes; ++l) {
       const auto bits = std::bit_cast<std::uint32_t>(t[l]);
       to[l] = (rounded(per_unit * sx[l]) & 0xffffU) | rounded(per_unit * sy[l]) << 16;
@@ -73,7 +73,7 @@ MUSLIN_VECTOR_CODE void project_blocks(std::size_t count, float* __restrict sx, 
 
 Couplings::Couplings(std::shared_ptr<const CouplingPattern> pattern, std::size_t first)
     : pattern_(std::move(pattern)), first_(first) {
-  coefficients_.resize(words * pattern_->block_count() + 2 * room);
+  coefficients_.resize(block_words * pattern_->block_count() + 2 * room);
   units_.resize(pattern_->block_count());
   clear();
 }
@@ -97,12 +97,13 @@ void Couplings::project() {
 }
 
 void Couplings::load(std::size_t block, std::size_t count, float* sx, float* sy, float* sz, float* t) const {
-  load_blocks(coefficients() + words * block, units() + block, count, sx, sy, sz, t);
+  load_blocks(coefficients() + block_words * block, units() + block, count, sx, sy, sz, t);
 }
 
 void Couplings::store(std::size_t block, std::size_t count, const float* sx, const float* sy, const float* sz,
                       const float* t) {
-  store_blocks(coefficients_.data() + room + words * block, units_.data() + block, count, sx, sy, sz, t);
+  store_blocks(coefficients_.data() + room + block_words * block, units_.data() + block, count, sx, sy, sz,
+               t);
 }
 
 }  // namespace muslin

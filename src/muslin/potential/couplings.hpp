@@ -43,6 +43,10 @@ class Couplings {
   /// √q by block, of the integers in the upper halves: 2⁻¹⁶ of that of sx, sy and sz.
   const float* units() const { return units_.data(); }
 
+  /// To be written by whoever knows how: different blocks by different threads.
+  std::uint32_t* words(std::size_t block) { return coefficients_.data() + room + 2 * lanes * block; }
+  float* units(std::size_t block) { return units_.data() + block; }
+
   std::size_t bytes() const { return coefficients_.bytes() + units_.bytes(); }
 
  private:

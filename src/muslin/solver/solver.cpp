@@ -30,20 +30,21 @@ std::vector<Vec3> warm_start(const IncrementalPotential& function, const StepPro
   const std::size_t count = function.size();
   std::vector<Vec3> best;
   double best_value = INFINITY;
+  std::vector<Vec3> d(count);
   const auto consider = [&](std::vector<Vec3> x) {
-    std::vector<Vec3> d(count);
-    for (std::size_t v = 0; v < count; ++v) {
-      d[v] = (function.held(v) ? problem.targets[v] : x[v]) - state.positions[v];
-    }
+    for_each_vertex(count, [&](std::size_t v) {
+      if (function.held(v)) x[v] = problem.targets[v];
+      d[v] = x[v] - state.positions[v];
+    });
     const double safe = function.max_step(state.positions, d);
     if (safe < 1) {
       for (std::size_t v = 0; v < count; ++v) {
         if (!function.held(v)) d[v] *= 0.9 * safe;
       }
       if (function.max_step(state.positions, d) < 1) return;
-    }
-    for (std::size_t v = 0; v < count; ++v) {
-      x[v] = function.held(v) ? problem.targets[v] : Vec3(state.positions[v] + d[v]);
+      for (std::size_t v = 0; v < count; ++v) {
+        if (!function.held(v)) x[v] = state.positions[v] + d[v];
+      }
     }
     const double value = function.value(x).value;
     if (value < best_value) {
@@ -102,7 +103,7 @@ LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x,
       before = norm;
       add(1, correction, s);
       function.hessian_product(x, s, product);
-      for (std::size_t v = 0; v < count; ++v) residual[v] = b[v] - product[v];
+      for_each_vertex(count, [&](std::size_t v) { residual[v] = b[v] - product[v]; });
     }
     if (report.converged) return report;
   }
@@ -124,13 +125,13 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
   const double dt = context.dt;
   const IncrementalPotential function(problem, context.inertial_prediction, dt);
   std::vector<Vec3> coast(count), rhs(count), s(count), residual(count), g(count);
-  for (std::size_t v = 0; v < count; ++v) {
+  for_each_vertex(count, [&](std::size_t v) {
     coast[v] =
         function.held(v) ? Vec3(problem.targets[v] - state.positions[v]) : Vec3(dt * state.velocities[v]);
-  }
+  });
   function.gradient(state.positions, g);
   function.hessian_product(state.positions, coast, rhs);
-  for (std::size_t v = 0; v < count; ++v) rhs[v] = -g[v] - rhs[v];
+  for_each_vertex(count, [&](std::size_t v) { rhs[v] = -g[v] - rhs[v]; });
   const LinearReport solved =
       solve_exactly(function, state.positions, rhs, settings.linear_tolerance, workspace.inner, s, residual);
   x = state.positions;
@@ -197,7 +198,7 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
   std::vector<Vec3> velocities(x.size());
   const bool explicit_step = settings.integrator == Integrator::symplectic_euler;
   const ConstVectors from = explicit_step ? ConstVectors(state.positions) : ConstVectors(context.anchor);
-  for (std::size_t v = 0; v < x.size(); ++v) velocities[v] = (x[v] - from[v]) / context.dt;
+  for_each_vertex(x.size(), [&](std::size_t v) { velocities[v] = (x[v] - from[v]) / context.dt; });
   state.previous_positions = std::exchange(state.positions, std::move(x));
   state.previous_velocities = std::exchange(state.velocities, std::move(velocities));
   state.previous_dt = context.length;

@@ -17,9 +17,7 @@ namespace plain {
 }  // namespace
 
 // Vector types, unlike loops, take the instruction set of where they are written: hence no function clones.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define MUSLIN_SWEEPS_BY_PROCESSOR
+#ifdef MUSLIN_BY_PROCESSOR
 #pragma GCC push_options
 #pragma GCC target("arch=x86-64-v3")
 namespace {
@@ -41,7 +39,7 @@ namespace avx512 {
 std::span<const Kernels* const> all_kernels() {
   static const std::vector<const Kernels*> all = [] {
     std::vector<const Kernels*> some = {&plain::table};
-#ifdef MUSLIN_SWEEPS_BY_PROCESSOR
+#ifdef MUSLIN_BY_PROCESSOR
     if (__builtin_cpu_supports("x86-64-v3")) some.push_back(&avx2::table);
     if (__builtin_cpu_supports("x86-64-v4")) some.push_back(&avx512::table);
 #endif

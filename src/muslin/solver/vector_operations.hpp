@@ -12,6 +12,14 @@ namespace muslin {
 
 inline constexpr std::size_t vector_grain = 4096;
 
+/// body(v) for all v.
+template <class Body>
+void for_each_vertex(std::size_t count, const Body& body) {
+  parallel_for(count, vector_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) body(v);
+  });
+}
+
 inline void set_zero(Vectors y) {
   parallel_for(y.size(), vector_grain, [&](std::size_t begin, std::size_t end) {
     std::fill(y.begin() + static_cast<std::ptrdiff_t>(begin), y.begin() + static_cast<std::ptrdiff_t>(end),
