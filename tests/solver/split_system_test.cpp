@@ -1,6 +1,7 @@
 // The split system against its definition in dense matrices, and the same bits from every kernel.
 #include "muslin/solver/split_system.hpp"
 
+#include <cmath>
 #include <cstring>
 
 #include "support/lattice_box.hpp"
@@ -110,6 +111,15 @@ TEST_P(SplitSystemTest, HasTheSameBitsForAnyThreadCount) {
   set_thread_count(0);
   for (const auto& s : solutions)
     EXPECT_EQ(std::memcmp(s.data(), solutions[0].data(), s.size() * sizeof(Vec3)), 0);
+}
+
+TEST_P(SplitSystemTest, RecoversFromASolveThatOverflowed) {
+  SplitSystem system;
+  system.factor(h_);
+  const std::vector<Vec3> b = free_vectors(1);
+  const double rr = system.start(b, 1);
+  EXPECT_FALSE(std::isfinite(system.start(b, 1e38) + system.direction(0, 0)));
+  EXPECT_EQ(system.start(b, 1), rr);
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, SplitSystemTest,

@@ -31,6 +31,14 @@ void InnerSolver::linearize(const IncrementalPotential& function, ConstVectors x
   projected_ = false;
 }
 
+bool InnerSolver::project() {
+  if (projected_) return false;
+  h_.project();
+  system_.factor(h_);
+  projected_ = true;
+  return true;
+}
+
 LinearReport InnerSolver::solve(ConstVectors b, const LinearSettings& settings, Vectors s, double& norm) {
   // Scaled to entries of at most 1, far from the ends of float's range.
   const double scale = largest_entry(b);
@@ -59,9 +67,7 @@ LinearReport InnerSolver::solve(ConstVectors b, const LinearSettings& settings, 
     // bound.
     const bool stop_at_negative = settings.negative_curvature == NegativeCurvature::stop;
     if (report.iterations == 1 && !(curvature > 0) && stop_at_negative && !projected_) {
-      h_.project();
-      system_.factor(h_);
-      projected_ = true;
+      project();
       return solve(b, settings, s, norm);
     }
     if (!std::isfinite(curvature) || curvature == 0) break;

@@ -23,6 +23,9 @@ class InnerSolver {
   /// linearisation, unless NegativeCurvature::pass asks for H as it is.
   LinearReport solve(ConstVectors b, const LinearSettings& settings, Vectors s, double& norm);
 
+  /// Replaces H by its projection until the next linearisation; false if it was so already.
+  bool project();
+
   std::size_t bytes() const { return h_.bytes() + system_.bytes(); }
 
  private:

@@ -113,12 +113,18 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
     LinearSettings linear;
     linear.tolerance = std::max(forcing, 0.3 * settings.tolerance / imbalance.largest);
     linear.tolerance = std::min(linear.tolerance, loosest_forcing);
-    const LinearReport solved = solve_linear(function, point.x, g, linear, inner, s);
     ++report.newton_iterations;
-    report.linear_iterations += solved.iterations;
-
-    const double slope = negate_and_dot(g, s);
-    if (!(slope < 0) || !line_search(function, s, slope, point, g, room)) {
+    const auto move = [&] {
+      report.linear_iterations += solve_linear(function, point.x, g, linear, inner, s).iterations;
+      const double slope = negate_and_dot(g, s);
+      return slope < 0 && line_search(function, s, slope, point, g, room);
+    };
+    bool moved = move();
+    if (!moved && inner.project()) {  // a search that failed has overwritten g
+      function.gradient(point.x, g);
+      moved = move();
+    }
+    if (!moved) {
       report.failure = "no step lowers the energy any further";
       break;
     }

@@ -100,10 +100,7 @@ double SplitSystem::factor(Linearization& h) {
   excess_.resize(6 * positions);
   rest_.resize(h.has_rest() ? 6 * positions : 0);
   vectors_ = h.workspace(15 * positions);
-  if (flat_.size() != positions) {  // empty groups between tasks are read, but never written
-    flat_.resize(positions);
-    for (float* flat : {flat_.data().x, flat_.data().y, flat_.data().z}) std::fill_n(flat, positions, 0.0F);
-  }
+  flat_.resize(positions);
   free_.assign(group_count_, 0);
 
   const float* const identity = h.identity();
@@ -156,6 +153,10 @@ double SplitSystem::start(ConstVectors b, double scale) {
       r[place(i) + at(c) * lanes] = v < 0 ? 0 : static_cast<float>(scale * b[at(v)][c]);
   });
   std::memset(r + size, 0, 2 * size * sizeof(float));
+  // Lanes without a coupling read what happens to be there and multiply it by zero: it must be finite, also
+  // after a solve that has overflown.
+  for (float* flat : {flat_.data().x, flat_.data().y, flat_.data().z})
+    std::memset(flat, 0, flat_.size() * sizeof(float));
   return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     return sweep_kernels::kernels().solve_forward(sweep, r + offset);
   });
