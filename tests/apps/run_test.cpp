@@ -108,10 +108,10 @@ TEST(Program, KilledAtRandomMomentsItResumesToTheSameBytes) {
 
 TEST(Program, CtrlCIsCode130AndResumable) {
   Scratch scratch;  // a run long enough that the signal comes before its end
-  ASSERT_EQ(run(scratch, run_words(scratch / "straight", 1000)).code, 0);
+  ASSERT_EQ(run(scratch, run_words(scratch / "straight", 4000)).code, 0);
   for (const int signal : {SIGINT, SIGTERM}) {
     const fs::path directory = scratch / ("stopped" + std::to_string(signal));
-    Process process(scratch, run_words(directory, 1000));
+    Process process(scratch, run_words(directory, 4000));
     while (process.running() && !fs::exists(directory / "checkpoint" / "000003.state"))
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     process.send(signal);
@@ -119,7 +119,7 @@ TEST(Program, CtrlCIsCode130AndResumable) {
     ASSERT_EQ(stopped.code, 130) << stopped.err;
     EXPECT_THAT(stopped.err, HasSubstr("--resume"));
     EXPECT_EQ(summary(directory)["status"], "interrupted");
-    ASSERT_EQ(run(scratch, with(run_words(directory, 1000), {"--resume"})).code, 0);
+    ASSERT_EQ(run(scratch, with(run_words(directory, 4000), {"--resume"})).code, 0);
     expect_same_run(scratch / "straight", directory);
   }
 }
