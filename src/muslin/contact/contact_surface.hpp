@@ -19,6 +19,9 @@ struct ContactBody {
   double radius = 0;         ///< half the thickness, or the radius of a sphere or capsule [m]
   bool self_contact = true;  ///< whether it touches itself
   bool fixed = false;        ///< a collider: two fixed bodies do not touch each other
+  /// Of a contact with this body [N/m]; that of a pair is the smaller one. About 0.15 of the membrane's
+  /// Young's modulus × thickness of cloth; infinite where the other body decides.
+  double stiffness = 150;
 };
 
 /// A half-space that nothing enters: gap = normal·(x − x_point). The plane moves with its point and does not

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "muslin/constraint/pin.hpp"
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/core/progress.hpp"
 #include "muslin/geometry/inspect.hpp"
 #include "muslin/geometry/mesh.hpp"
@@ -97,6 +98,7 @@ struct Model {
   std::vector<LoadTerm> loads;
   std::vector<Pin> pins;
   std::vector<Probe> probes;
+  std::shared_ptr<const ContactModel> contact;  ///< null if nothing can touch
   std::vector<std::string> warnings;  ///< what the user should know before a run
 
   std::size_t vertex_count() const { return rest_positions.size(); }
