@@ -113,7 +113,7 @@ void make_potential(benchmark::State& state) {
   candidates.update(contact.x, contact.after(), contact.drape.distance / 4);
   std::size_t pairs = 0;
   for (auto _ : state) {
-    const ContactPotential w(candidates, contact.map, contact.x, {150, 0.3, 4e-6}, contact.x);
+    const ContactPotential w(candidates, contact.map, contact.x, {0.3, 4e-6}, contact.x);
     pairs = w.pair_count();
   }
   state.counters["pairs"] = static_cast<double>(pairs);
@@ -123,7 +123,7 @@ void contact_gradient(benchmark::State& state) {
   const Contact contact(static_cast<int>(state.range(0)));
   ContactCandidates candidates(contact.surface, contact.rest, contact.drape.distance);
   candidates.update(contact.x, contact.after(), contact.drape.distance / 4);
-  const ContactPotential w(candidates, contact.map, contact.x, {150, 0.3, 4e-6}, contact.x);
+  const ContactPotential w(candidates, contact.map, contact.x, {0.3, 4e-6}, contact.x);
   std::vector<Vec3> g(contact.x.size(), Vec3::Zero());
   for (auto _ : state) {
     w.add_gradient(contact.x, g);

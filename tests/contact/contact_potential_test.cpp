@@ -105,7 +105,7 @@ struct Scene {
     ContactCandidates candidates(surface, x, range);
     // The sheets are flat at rest, but x is as good: bodies are a twentieth of an edge apart.
     candidates.update(x, x, 0.002);
-    return ContactPotential(candidates, map, q, {150, friction, stick}, start);
+    return ContactPotential(candidates, map, q, {friction, stick}, start);
   }
 };
 
@@ -185,7 +185,9 @@ TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
   triangles.emplace_back(25, 25, 25);
   std::vector<int> bodies(25, 0);
   bodies.push_back(1);
-  const auto surface = std::make_shared<ContactSurface>(triangles, bodies, std::vector<ContactBody>{{}, {}});
+  // The softer body decides.
+  const auto surface = std::make_shared<ContactSurface>(
+      triangles, bodies, std::vector<ContactBody>{{0, false, false, INFINITY}, {0, false, false, 1000}});
   const auto map = std::make_shared<SurfaceMap>(SurfaceMap::identity(26));
   for (const Vec3& over :
        {Vec3(0.23, 0.001, 0.22), Vec3(0.2, 0.001, 0.25), Vec3(0.2, 0.001, 0.2), Vec3(0.25, 0.001, 0.25)}) {
@@ -193,7 +195,7 @@ TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
     q.push_back(over);
     ContactCandidates candidates(surface, q, 0.002);
     candidates.update(q, q, 0.001);
-    const ContactPotential w(candidates, map, q, {1000, 0, 1e-5}, q);
+    const ContactPotential w(candidates, map, q, {0, 1e-5}, q);
     EXPECT_NEAR(test::gradient(w, q)[25].y(), -1, 1e-9) << over.transpose();
   }
 }
@@ -215,9 +217,10 @@ TEST(ContactPotential, MaxStepKeepsEnergyFinite) {
 /// method with lagged friction; returns how far it has slid after 200 and 400 steps of 1/240 s.
 std::array<double, 2> slide(double friction, double slope) {
   double halfway = 0;
-  const auto surface = std::make_shared<ContactSurface>(std::vector<Vec3i>{{0, 0, 0}}, std::vector<int>{0, 1},
-                                                        std::vector<ContactBody>{{}, {0, false, true}},
-                                                        std::vector<ContactPlane>{{1, Vec3(0, 1, 0)}});
+  const auto surface = std::make_shared<ContactSurface>(
+      std::vector<Vec3i>{{0, 0, 0}}, std::vector<int>{0, 1},
+      std::vector<ContactBody>{{0, true, false, 30000}, {0, false, true, INFINITY}},
+      std::vector<ContactPlane>{{1, Vec3(0, 1, 0)}});
   const auto map = std::make_shared<SurfaceMap>(SurfaceMap::identity(2));
   const double range = 0.002, dt = 1.0 / 240, g = 9.81;
   const Vec3 gravity = g * Vec3(std::sin(slope), -std::cos(slope), 0);
@@ -230,7 +233,7 @@ std::array<double, 2> slide(double friction, double slope) {
     const Vec3 predicted = q[0] + dt * velocity + dt * dt * gravity;
     candidates.update(q, q, 0.01);
     for (int iteration = 0; iteration < 12; ++iteration) {
-      const ContactPotential w(candidates, map, q, {30000, friction, 4e-6}, start, slips);
+      const ContactPotential w(candidates, map, q, {friction, 4e-6}, start, slips);
       std::vector<Mat3> blocks(2, Mat3::Zero());
       w.add_diagonal_blocks(q, blocks);
       const Vec3 residual = (q[0] - predicted) / (dt * dt) + test::gradient(w, q)[0];

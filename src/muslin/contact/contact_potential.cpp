@@ -71,16 +71,19 @@ Vec3 combined(const ContactPair& pair, const std::array<double, 4>& weights, Con
   return sum;
 }
 
+/// Place of a point of the second feature.
+std::size_t last_point(const ContactPair& pair) { return static_cast<std::size_t>(pair.point_count() - 1); }
+
 Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - normal.dot(v) * normal; }
 
 }  // namespace
 
 ContactPotential::ContactPotential(const ContactCandidates& candidates, std::shared_ptr<const SurfaceMap> map,
-                                   ConstVectors lagged, ContactStiffness stiffness, ConstVectors start,
+                                   ConstVectors lagged, Friction friction, ConstVectors start,
                                    std::span<const PairSlip> slips)
-    : surface_(candidates.shared_surface()), map_(std::move(map)), stiffness_(stiffness) {
-  if (!(stiffness.stiffness >= 0) || !(stiffness.friction >= 0) || !(stiffness.stick_length > 0))
-    throw Error(ErrorKind::usage, "a contact coefficient is negative",
+    : surface_(candidates.shared_surface()), map_(std::move(map)), friction_(friction) {
+  if (!(friction.coefficient >= 0) || !(friction.stick_length > 0))
+    throw Error(ErrorKind::usage, "a friction coefficient is negative",
                 "give 0 or more, and a stick length above 0");
   if (lagged.size() != map_->vertex_count() || start.size() != lagged.size() ||
       surface_->point_count() != map_->point_count())
@@ -101,12 +104,12 @@ ContactPotential::ContactPotential(const ContactCandidates& candidates, std::sha
       if (share <= 0) continue;
       Pair pair;
       pair.pair = all[i];
-      pair.stiffness = stiffness.stiffness * share;
+      pair.stiffness = surface_->stiffness(all[i].points[0], all[i].points[last_point(all[i])]) * share;
       pair.normal = at.normal;
       pair.weights = at.weights;
       pair.begin.setZero();
-      if (stiffness.friction > 0) {
-        pair.friction = -stiffness.friction * pair.stiffness * contact_law(gap, all[i].range).slope;
+      if (friction.coefficient > 0) {
+        pair.friction = -friction.coefficient * pair.stiffness * contact_law(gap, all[i].range).slope;
         pair.begin = combined(all[i], at.weights, x_start);
         const std::uint64_t key = all[i].key();
         const auto known = std::lower_bound(slips.begin(), slips.end(), key,
@@ -146,20 +149,25 @@ Vec3 ContactPotential::slip(const Pair& pair, ConstVectors x) const {
   return tangential(combined(pair.pair, pair.weights, x) - pair.begin, pair.normal);
 }
 
-double ContactPotential::value(ConstVectors q) const {
+ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
   std::vector<Vec3> buffer;
   const ConstVectors x = points(q, buffer);
-  return parallel_sum(pairs_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
+  return parallel_sum(pairs_.size(), grain, Parts{}, [&](std::size_t begin, std::size_t end) {
+    Parts sum;
     for (std::size_t i = begin; i < end; ++i) {
       const Pair& pair = pairs_[i];
       const double gap = pair_geometry(*surface_, pair.pair, x).distance - pair.pair.thickness;
-      sum += pair.stiffness * contact_law(gap, pair.pair.range).value;
+      sum.pressed += pair.stiffness * contact_law(gap, pair.pair.range).value;
       if (pair.friction > 0)
-        sum += pair.friction * friction_law(slip(pair, x).norm(), stiffness_.stick_length).value;
+        sum.rubbed += pair.friction * friction_law(slip(pair, x).norm(), friction_.stick_length).value;
     }
     return sum;
   });
+}
+
+double ContactPotential::value(ConstVectors q) const {
+  const Parts both = parts(q);
+  return both.pressed + both.rubbed;
 }
 
 void ContactPotential::add_gradient(ConstVectors q, Vectors g) const {
@@ -175,7 +183,7 @@ void ContactPotential::add_gradient(ConstVectors q, Vectors g) const {
       Vec3 rub = Vec3::Zero();
       if (pair.friction > 0) {
         const Vec3 e = slip(pair, x);
-        rub = pair.friction * friction_law(e.norm(), stiffness_.stick_length).curvature * e;
+        rub = pair.friction * friction_law(e.norm(), friction_.stick_length).curvature * e;
       }
       for (std::size_t k = 0; k < 4; ++k)
         forces[4 * i + k] = at.weights[k] * slope * at.normal + pair.weights[k] * rub;
@@ -215,7 +223,7 @@ class ContactPotential::Hessian : public ContactHessian {
         all[2 * i + 1] = {pair.pair.points, pair.weights, pair.normal, 0, 0};
         if (pair.friction <= 0) continue;
         const double secant =
-            pair.friction * friction_law(w.slip(pair, x).norm(), w.stiffness_.stick_length).curvature;
+            pair.friction * friction_law(w.slip(pair, x).norm(), w.friction_.stick_length).curvature;
         // One row is enough where nothing has moved since friction was lagged.
         all[2 * i + (at.weights == pair.weights ? 0 : 1)].tangential = secant;
       }
@@ -280,7 +288,7 @@ std::vector<PairSlip> ContactPotential::slips(ConstVectors q) const {
     if (pair.friction <= 0) continue;
     Vec3 e = slip(pair, x);
     const double length = e.norm();
-    if (length > stiffness_.stick_length) e *= stiffness_.stick_length / length;
+    if (length > friction_.stick_length) e *= friction_.stick_length / length;
     result.push_back({pair.pair.key(), e});
   }
   std::sort(result.begin(), result.end(), [](const PairSlip& a, const PairSlip& b) { return a.key < b.key; });

@@ -2,7 +2,8 @@
 //
 //   W(q) = Σ k wₚ b(gₚ(x)) + Σ μ λₚ f(|eₚ(x)|)
 //
-// over pairs p of features with gap g = distance − thickness, b and f as in contact_energy.hpp.
+// over pairs p of features with gap g = distance − thickness, b and f as in contact_energy.hpp, k the smaller
+// stiffness of the two bodies.
 //
 // Shares w count every contact once. A vertex that is nearest to an edge or corner of triangles meets all of
 // them: each gets its share. Edges count only where they cross in their interiors, fading out towards their
@@ -28,9 +29,8 @@
 
 namespace muslin {
 
-struct ContactStiffness {
-  double stiffness = 150;  ///< k of a contact [N/m]; about 0.15 of the membrane's Young's modulus × thickness
-  double friction = 0;     ///< Coulomb's μ
+struct Friction {
+  double coefficient = 0;      ///< Coulomb's μ
   double stick_length = 4e-6;  ///< slip at which friction is full [m]: ε_v dt, for instance 1 mm/s · 1/240 s
 };
 
@@ -46,7 +46,7 @@ class ContactPotential : public Potential {
   /// positions at the beginning of the step, `slips` those of the step before, by ascending key. Errors:
   /// usage, if a coefficient is negative, sizes do not fit or a gap is not positive at `lagged`.
   ContactPotential(const ContactCandidates& candidates, std::shared_ptr<const SurfaceMap> map,
-                   ConstVectors lagged, ContactStiffness stiffness, ConstVectors start,
+                   ConstVectors lagged, Friction friction, ConstVectors start,
                    std::span<const PairSlip> slips = {});
 
   double value(ConstVectors q) const override;
@@ -58,6 +58,13 @@ class ContactPotential : public Potential {
   void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;
   /// Keeps a tenth of every gap.
   double max_step(ConstVectors q, ConstVectors d) const override;
+
+  /// The two sums of W: what pressed surfaces store, and what friction takes.
+  struct Parts {
+    double pressed = 0, rubbed = 0;
+    Parts operator+(const Parts& other) const { return {pressed + other.pressed, rubbed + other.rubbed}; }
+  };
+  Parts parts(ConstVectors q) const;
 
   /// Pairs with some share that are or may come into range.
   std::size_t pair_count() const { return pairs_.size(); }
@@ -81,7 +88,7 @@ class ContactPotential : public Potential {
 
   std::shared_ptr<const ContactSurface> surface_;
   std::shared_ptr<const SurfaceMap> map_;
-  ContactStiffness stiffness_;
+  Friction friction_;
   std::vector<Pair> pairs_;
   // The pairs at each point: 4 · pair + place, by point.
   std::vector<int> offsets_, places_;

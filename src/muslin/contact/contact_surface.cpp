@@ -25,6 +25,15 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
   }
   for (const ContactBody& body : bodies_) {
     if (!(body.radius >= 0)) throw Error(ErrorKind::usage, "a contact radius is negative", "give 0 or more");
+    if (!(body.stiffness > 0))
+      throw Error(ErrorKind::usage, "a contact stiffness is not positive", "give newtons per metre");
+  }
+  for (std::size_t a = 0; a < bodies_.size(); ++a) {
+    for (std::size_t b = a; b < bodies_.size() && std::isinf(bodies_[a].stiffness); ++b) {
+      if (std::isinf(bodies_[b].stiffness) && may_touch(static_cast<int>(a), static_cast<int>(b)))
+        throw Error(ErrorKind::usage, "two bodies that may touch have infinite contact stiffness",
+                    "give one of them newtons per metre");
+    }
   }
   for (const ContactPlane& plane : planes_) {
     if (plane.point < 0 || plane.point >= points)

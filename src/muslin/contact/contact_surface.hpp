@@ -5,6 +5,7 @@
 // (a, a, a) a point, such as the centre of a sphere; their body's radius makes them round.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -43,8 +44,9 @@ class ContactSurface {
   };
 
   /// Points are numbered 0 … body_of_point.size() − 1. A body's triangles use points of that body only.
-  /// Errors: usage, if an index is out of range, a triangle joins two bodies, a radius is negative or a
-  /// normal is not of length 1 (to 1e-9).
+  /// Errors: usage, if an index is out of range, a triangle joins two bodies, a radius is negative, a
+  /// stiffness not positive, two bodies that may touch both have an infinite one, or a normal is not of
+  /// length 1 (to 1e-9).
   ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
                  std::vector<ContactBody> bodies, std::vector<ContactPlane> planes = {});
 
@@ -63,6 +65,11 @@ class ContactSurface {
     const ContactBody &a = bodies_[static_cast<std::size_t>(body_a)],
                       &b = bodies_[static_cast<std::size_t>(body_b)];
     return body_a == body_b ? a.self_contact && !a.fixed : !(a.fixed && b.fixed);
+  }
+  /// Of a contact between the bodies of two points [N/m].
+  double stiffness(int point_a, int point_b) const {
+    return std::min(bodies_[static_cast<std::size_t>(body_of(point_a))].stiffness,
+                    bodies_[static_cast<std::size_t>(body_of(point_b))].stiffness);
   }
   /// How many triangles share a point or an edge.
   int triangles_at_point(int p) const { return point_shares_[static_cast<std::size_t>(p)]; }

@@ -70,6 +70,8 @@ EnergyFlow energy_flow(const SolvedStep& step) {
       flow.work -= spent;
     } else if (act.role == EnergyRole::dissipation) {
       flow.dissipated += spent;
+    } else if (act.gain) {
+      flow.dissipated += spent - *act.gain;
     } else {
       double stored = 0;
       for (const Node& node : gauss) {

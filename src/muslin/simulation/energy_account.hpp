@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,9 @@ namespace muslin {
 struct ActingPotential {
   EnergyRole role = EnergyRole::elastic;
   const Potential* potential = nullptr;
+  /// By how much the energy it stores has grown [J], where that is known by values: of contact, whose forces
+  /// begin within a step and whose lagged parts change between steps. The others are integrated.
+  std::optional<double> gain = std::nullopt;
 };
 
 /// A step that has been solved.

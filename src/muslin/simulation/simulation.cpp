@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "muslin/constraint/holds.hpp"
+#include "muslin/contact/contact_guard.hpp"
+#include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/simulation/checkpoint.hpp"
@@ -25,6 +27,9 @@ struct Tally {
   std::vector<double> stored;           ///< energy of each potential, then of each load [J]
   std::int64_t newton = 0, linear = 0;  ///< iterations of the frame in work
   double residual = 0;                  ///< largest of the frame in work [m/s²]
+  double pressed = 0;                   ///< energy of contact [J]
+  double smallest_gap = std::numeric_limits<double>::infinity();  ///< of the frame in work [m]
+  int held_back = 0;                                              ///< at the end of the last step
 };
 
 /// A step that could not be solved even when halved as often as allowed.
@@ -87,11 +92,13 @@ struct Simulation::Parts {
   std::shared_ptr<const Model> model;
   State state;
   Stepper stepper;
+  std::unique_ptr<ContactGuard> guard;  ///< null if nothing can touch
   Holds holds;
   Tally tally;
   int frame = 0;
   int steps_done = 0;
   double wall_ms = 0;  ///< spent on the frame in work
+  double linearize_seconds = 0, solve_seconds = 0;
   Diagnostics diagnostics;
   std::vector<std::uint8_t> fixed;
   std::vector<Vec3> targets;
@@ -103,6 +110,7 @@ struct Simulation::Parts {
     return (static_cast<double>(at_frame) * time().steps_per_frame + steps) /
            (time().frame_rate * time().steps_per_frame);
   }
+  void start_contact();
   void step();
   void advance_by(double length, int halvings);
   void account(const StepContext& context, double length, const State& before,
@@ -135,6 +143,7 @@ Simulation::Parts::Parts(std::shared_ptr<const Model> the_model) : model(std::mo
   }
   fixed.resize(count);
   targets.resize(count);
+  if (model->contact) start_contact();
 
   const StepContext context = step_context(model->scene.solver.integrator, state, time().step());
   for (const PotentialTerm& term : model->potentials)
@@ -148,6 +157,19 @@ Simulation::Parts::Parts(std::shared_ptr<const Model> the_model) : model(std::mo
   finish_frame();
 }
 
+void Simulation::Parts::start_contact() {
+  if (model->scene.solver.integrator == Integrator::symplectic_euler)
+    throw Error(ErrorKind::usage, "symplectic_euler does not work with contact",
+                "use implicit_euler, bdf2 or linearly_implicit_euler");
+  refuse_crossings(*model->contact, state.positions);
+  guard = std::make_unique<ContactGuard>(model->contact);
+  guard->begin(state.positions, time().step());
+  guard->potential(state.positions);
+  guard->end(state.positions);
+  tally.pressed = guard->last_potential().parts(state.positions).pressed;
+  tally.smallest_gap = guard->memory().smallest_gap;
+}
+
 std::vector<std::unique_ptr<Potential>> Simulation::Parts::potentials_of_loads(
     const StepContext& context) const {
   std::vector<std::unique_ptr<Potential>> potentials;
@@ -159,6 +181,7 @@ void Simulation::Parts::step() {
   const State start = state;
   const Holds start_holds = holds;
   const Tally start_tally = tally;
+  const std::vector<PairSlip> start_slips = guard ? guard->memory().slips : std::vector<PairSlip>();
   try {
     advance_by(time().step(), 0);
     const int lost = vertex_out_of_range(state.positions);
@@ -167,6 +190,7 @@ void Simulation::Parts::step() {
     state = start;
     holds = start_holds;
     tally = start_tally;
+    if (guard) guard->restore_slips(start_slips);
     fail(failure.report);
   }
   ++steps_done;
@@ -174,27 +198,32 @@ void Simulation::Parts::step() {
 }
 
 void Simulation::Parts::advance_by(double length, int halvings) {
-  const SolverSettings& settings = model->scene.solver;
+  SolverSettings settings = model->scene.solver;
+  if (guard && model->contact->mode == ContactMode::fast) settings.effort = Effort::fast;
   const State before = state;
   const StepContext context = step_context(settings.integrator, before, length);
   const auto loads = potentials_of_loads(context);
   Holds next = holds;
   next.step(model->pins, context.time_begin, context.time_end, before.positions, fixed, targets);
 
-  StepProblem problem{model->masses, {}, fixed, targets};
+  StepProblem problem{model->masses, {}, fixed, targets, guard.get()};
   for (const PotentialTerm& term : model->potentials) problem.potentials.push_back(term.potential.get());
   for (const auto& load : loads)
     if (load) problem.potentials.push_back(load.get());
   const StepReport report = stepper.step(settings, context, problem, state);
   tally.newton += report.newton_iterations;
   tally.linear += report.linear_iterations;
-  if (!report.converged) {
+  linearize_seconds += report.linearize_seconds;
+  solve_seconds += report.solve_seconds;
+  if (!report.made()) {
     if (halvings == max_halvings) throw StepFailure{report};
     advance_by(length / 2, halvings + 1);
     advance_by(length / 2, halvings + 1);
     return;
   }
   tally.residual = std::max(tally.residual, report.residual);
+  tally.held_back = report.held_back;
+  if (guard) tally.smallest_gap = std::min(tally.smallest_gap, guard->memory().smallest_gap);
   holds = std::move(next);
   account(context, length, before, loads);
 }
@@ -218,6 +247,12 @@ void Simulation::Parts::account(const StepContext& context, double length, const
     tally.work += begin - tally.stored[slot];
     tally.stored[slot] = loads[i] ? loads[i]->value(state.positions) : 0.0;
   }
+  if (guard) {
+    const ContactPotential& contact = guard->last_potential();
+    const double pressed = contact.parts(state.positions).pressed;
+    acts.push_back({EnergyRole::elastic, &contact, pressed - tally.pressed});
+    tally.pressed = pressed;
+  }
   const EnergyFlow flow = energy_flow(
       {model->scene.solver.integrator, length, &context, &before, &state, model->masses, fixed, acts});
   tally.work += flow.work;
@@ -235,6 +270,7 @@ void Simulation::Parts::finish_frame() {
     if (role == EnergyRole::elastic) row.elastic += tally.stored[i];
     if (role == EnergyRole::potential) row.potential += tally.stored[i];
   }
+  row.elastic += tally.pressed;
   row.work = tally.work;
   row.dissipated = tally.dissipated;
   row.momentum = total_momentum(model->masses, state.velocities);
@@ -245,11 +281,13 @@ void Simulation::Parts::finish_frame() {
   for (const Body& body : model->bodies)
     row.max_stretch = std::max(row.max_stretch, max_stretch(body, model->of(body, state.positions)));
   if (model->bodies.empty()) row.max_stretch = 1;
-  row.min_distance = std::numeric_limits<double>::infinity();
+  row.min_distance = tally.smallest_gap;
+  row.held_back = tally.held_back;
   row.wall_ms = wall_ms;
   diagnostics = row;
   tally.newton = tally.linear = 0;
   tally.residual = 0;
+  tally.smallest_gap = std::numeric_limits<double>::infinity();
   wall_ms = 0;
 }
 
@@ -287,6 +325,22 @@ const State& Simulation::state() const { return parts_->state; }
 int Simulation::frame() const { return parts_->frame; }
 int Simulation::steps_done() const { return parts_->steps_done; }
 const Diagnostics& Simulation::diagnostics() const { return parts_->diagnostics; }
+
+RunCosts Simulation::costs() const {
+  RunCosts costs;
+  costs.linearize = parts_->linearize_seconds;
+  costs.solve = parts_->solve_seconds;
+  if (!parts_->guard) return costs;
+  const ContactCounts& counts = parts_->guard->counts();
+  costs.search = counts.search_seconds;
+  costs.limit = counts.limit_seconds;
+  costs.contact = counts.potential_seconds;
+  costs.searches = static_cast<std::int64_t>(counts.searches);
+  costs.limits = static_cast<std::int64_t>(counts.limits);
+  costs.deflected = static_cast<std::int64_t>(counts.deflected);
+  costs.shortened = static_cast<std::int64_t>(counts.shortened);
+  return costs;
+}
 
 void Simulation::advance(const Progress& progress) {
   Parts& parts = *parts_;
@@ -331,6 +385,15 @@ std::vector<std::uint8_t> Simulation::checkpoint() const {
   out.value(tally.newton);
   out.value(tally.linear);
   out.value(tally.residual);
+  out.value(tally.pressed);
+  out.value(tally.smallest_gap);
+  out.value(tally.held_back);
+  const ContactMemory nothing;
+  const ContactMemory& contact = parts.guard ? parts.guard->memory() : nothing;
+  out.values(contact.slips);
+  out.values(contact.begin);
+  out.values(contact.end);
+  out.value(contact.smallest_gap);
 
   const Diagnostics& row = parts.diagnostics;
   for (double number :
@@ -339,6 +402,7 @@ std::vector<std::uint8_t> Simulation::checkpoint() const {
     out.value(number);
   out.value(row.newton_iterations);
   out.value(row.linear_iterations);
+  out.value(row.held_back);
   return std::move(out).finish();
 }
 
@@ -387,6 +451,14 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   tally.newton = in.value<std::int64_t>();
   tally.linear = in.value<std::int64_t>();
   tally.residual = in.value<double>();
+  tally.pressed = in.value<double>();
+  tally.smallest_gap = in.value<double>();
+  tally.held_back = in.value<int>();
+  ContactMemory contact;
+  contact.slips = in.values<PairSlip>();
+  contact.begin = in.values<Vec3>();
+  contact.end = in.values<Vec3>();
+  contact.smallest_gap = in.value<double>();
 
   Diagnostics row;
   for (double* number :
@@ -395,8 +467,16 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
     *number = in.value<double>();
   row.newton_iterations = in.value<int>();
   row.linear_iterations = in.value<int>();
+  row.held_back = in.value<int>();
   row.frame = static_cast<int>(header.frame);
 
+  if (parts.guard) {
+    refuse_crossings(*parts.model->contact, state.positions);
+    parts.guard->restore(std::move(contact));
+  } else {
+    tally.work -= tally.pressed;
+    tally.pressed = 0;
+  }
   parts.state = std::move(state);
   parts.tally = std::move(tally);
   parts.frame = row.frame;

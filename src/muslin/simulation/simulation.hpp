@@ -25,15 +25,27 @@ struct Diagnostics {
   Vec3 momentum = Vec3::Zero();
   int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
   double residual = 0;                               ///< largest of this frame [m/s²]
-  double max_stretch = 1;   ///< largest length / rest length of a spring, or of a shell in any direction
-  double min_distance = 0;  ///< smallest gap between surfaces in contact [m]; infinity without contact
-  double wall_ms = 0;       ///< time this frame took
+  double max_stretch = 1;  ///< largest length / rest length of a spring, or of a shell in any direction
+  /// Smallest gap between surfaces, thickness taken off, at the ends of all steps of the frame [m]; infinity
+  /// where it is more than the contact distance, or nothing can touch.
+  double min_distance = 0;
+  int held_back = 0;   ///< vertices moved along keyframes that something in their way holds back
+  double wall_ms = 0;  ///< time this frame took
 
   double balance() const { return kinetic + elastic + potential - work + dissipated; }
 };
 
+/// Where the time of a run with contact went, since it was made or restored.
+struct RunCosts {
+  double search = 0, limit = 0, contact = 0;  ///< finding candidates, limiting steps, contact potentials [s]
+  double linearize = 0, solve = 0;            ///< Hessians and their factors, linear systems [s]
+  std::int64_t searches = 0, limits = 0;      ///< how many
+  std::int64_t deflected = 0, shortened = 0;  ///< vertices, summed over limits
+};
+
 class Simulation {
  public:
+  /// Errors: input, if surfaces cross at the start; usage, if symplectic_euler meets contact.
   explicit Simulation(std::shared_ptr<const Model> model);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -44,6 +56,7 @@ class Simulation {
   int frame() const;                       ///< the last finished frame
   int steps_done() const;                  ///< steps of the frame in work; 0 unless it was interrupted
   const Diagnostics& diagnostics() const;  ///< of the last finished frame
+  RunCosts costs() const;
 
   /// Advances to the end of the next frame. A step that fails is halved, up to 8 times; if that fails too,
   /// throws Error(solver) with frame, time, place and what to change, and the state is that of the last good

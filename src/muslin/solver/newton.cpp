@@ -60,7 +60,8 @@ bool line_search(const IncrementalPotential& function, ConstVectors s, double sl
   return false;
 }
 
-/// Solves H s = b at the x that `inner` was linearised at; in double where float cannot.
+}  // namespace
+
 LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
                           const LinearSettings& settings, InnerSolver& inner, Vectors s) {
   if (inner.stiffest() <= InnerSolver::float_limit) {
@@ -72,8 +73,6 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
   function.diagonal_blocks(x, blocks);
   return conjugate_gradient(function, x, BlockJacobi(function, blocks), b, settings, s, residual);
 }
-
-}  // namespace
 
 std::size_t NewtonWorkspace::bytes() const {
   const std::size_t vectors = x.capacity() + g.capacity() + s.capacity();

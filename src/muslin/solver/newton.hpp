@@ -18,6 +18,10 @@ struct NewtonWorkspace {
   std::size_t bytes() const;
 };
 
+/// Solves H s = b at the x that `inner` was linearised at; in double where float cannot.
+LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
+                          const LinearSettings& settings, InnerSolver& inner, Vectors s);
+
 /// Minimises `function` from x, in place; held vertices of x stay. x must be finite in value. The report's
 /// residual is the imbalance at the returned x. Converged: imbalance ≤ settings.tolerance, or at the level
 /// that rounding of the positions alone can cause.

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "muslin/core/error.hpp"
 #include "muslin/solver/conjugate_gradient.hpp"
+#include "muslin/solver/guarded_newton.hpp"
 #include "muslin/solver/incremental_potential.hpp"
 #include "muslin/solver/inner_solver.hpp"
 #include "muslin/solver/newton.hpp"
@@ -67,6 +69,10 @@ StepReport solve_implicit(const SolverSettings& settings, const StepContext& con
                           const StepProblem& problem, const State& state, NewtonWorkspace& workspace,
                           std::vector<Vec3>& x) {
   const IncrementalPotential function(problem, context.inertial_prediction, context.dt);
+  if (problem.guard) {
+    x = state.positions;
+    return minimize_guarded(problem, function, settings, x, workspace);
+  }
   x = warm_start(function, problem, state, context.length);
   if (x.empty()) return failed("the held vertices cannot reach their targets within this step");
   return minimize(function, settings, x, workspace);
@@ -119,10 +125,12 @@ LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x,
 /// One Newton step from x_n on the exact tangent: with x_{n+1} = x_n + dt v_{n+1} it is
 /// (M + dt² K) Δv = dt (f − dt K v_n), and held vertices have a known Δv (Baraff and Witkin 1998).
 StepReport solve_linearly_implicit(const SolverSettings& settings, const StepContext& context,
-                                   const StepProblem& problem, const State& state, NewtonWorkspace& workspace,
+                                   const StepProblem& given, const State& state, NewtonWorkspace& workspace,
                                    std::vector<Vec3>& x) {
   const std::size_t count = state.positions.size();
   const double dt = context.dt;
+  StepProblem problem = given;
+  if (problem.guard) problem.potentials.push_back(&problem.guard->potential(state.positions));
   const IncrementalPotential function(problem, context.inertial_prediction, dt);
   std::vector<Vec3> coast(count), rhs(count), s(count), residual(count), g(count);
   for_each_vertex(count, [&](std::size_t v) {
@@ -135,13 +143,19 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
   const LinearReport solved =
       solve_exactly(function, state.positions, rhs, settings.linear_tolerance, workspace.inner, s, residual);
   x = state.positions;
-  add(1, coast, x);
-  add(1, s, x);
-  for (std::size_t v = 0; v < count; ++v) {
-    if (function.held(v)) x[v] = problem.targets[v];
+  StepReport report;
+  if (problem.guard) {
+    add(1, s, coast);
+    if (all_finite(coast)) problem.guard->advance(x, coast);
+    report.held_back = land_held_vertices(problem, x);
+  } else {
+    add(1, coast, x);
+    add(1, s, x);
+    for (std::size_t v = 0; v < count; ++v) {
+      if (function.held(v)) x[v] = problem.targets[v];
+    }
   }
   const IncrementalPotential::Imbalance imbalance = function.imbalance(residual);
-  StepReport report;
   report.converged = solved.converged;
   report.newton_iterations = 1;
   report.linear_iterations = solved.iterations;
@@ -177,6 +191,12 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
   assert(state.velocities.size() == state.positions.size());
   std::vector<Vec3> x;
   StepReport report;
+  if (problem.guard) {
+    if (settings.integrator == Integrator::symplectic_euler)
+      throw Error(ErrorKind::usage, "symplectic_euler does not work with contact",
+                  "use implicit_euler, bdf2 or linearly_implicit_euler");
+    problem.guard->begin(state.positions, context.length);
+  }
   switch (settings.integrator) {
     case Integrator::implicit_euler:
     case Integrator::bdf2:
@@ -189,11 +209,12 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
       report = solve_symplectic(context, problem, state, x);
       break;
   }
-  if (report.converged && !all_finite(x)) {
+  if (report.made() && !all_finite(x)) {
     report.converged = false;
     report.failure = "positions are not finite numbers";
   }
-  if (!report.converged) return report;
+  if (!report.made()) return report;
+  if (problem.guard) problem.guard->end(x);
 
   std::vector<Vec3> velocities(x.size());
   const bool explicit_step = settings.integrator == Integrator::symplectic_euler;

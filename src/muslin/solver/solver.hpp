@@ -11,6 +11,7 @@
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/potential.hpp"
 #include "muslin/potential/state.hpp"
+#include "muslin/potential/step_guard.hpp"
 
 namespace muslin {
 
@@ -21,30 +22,44 @@ enum class Integrator {
   symplectic_euler,         ///< explicit, first order, conserves; stable only for small steps
 };
 
+/// How much a step of implicit_euler or bdf2 is worth. Both keep what a StepGuard keeps.
+enum class Effort {
+  converged,  ///< Newton's method to `tolerance`, or the step fails
+  fast,       ///< so many iterations and no more, under a guard only: for small steps
+};
+
 struct SolverSettings {
   Integrator integrator = Integrator::implicit_euler;
+  Effort effort = Effort::converged;
   /// Converged when no vertex is out of balance by more than this acceleration: max ‖∂E/∂xᵢ‖ / (mᵢ dt²) ≤
   /// tolerance [m/s²].
   double tolerance = 1e-2;
-  int max_iterations = 100;        ///< Newton iterations of a step
+  int max_iterations = 100;        ///< Newton iterations of a converged step
+  int fast_iterations = 2;         ///< Newton iterations of a fast step at most
   double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
 };
 
-/// One step's problem. `fixed[v]` is 1 where vertex v is held: it ends the step at targets[v].
+/// One step's problem. `fixed[v]` is 1 where vertex v is held: it ends the step at targets[v], or, where a
+/// guard does not let it, as near as it comes.
 struct StepProblem {
   std::span<const double> masses;            ///< #V [kg]
   std::vector<const Potential*> potentials;  ///< all that act during this step
   std::span<const std::uint8_t> fixed;       ///< #V
   ConstVectors targets;                      ///< #V by 3 [m], read only where fixed
+  StepGuard* guard = nullptr;                ///< whom to ask before anything moves; none if null
 };
 
 struct StepReport {
-  bool converged = false;
+  bool converged = false;  ///< in balance; a fast step may be made without
   int newton_iterations = 0;
   int linear_iterations = 0;
-  double residual = 0;    ///< in the unit of SolverSettings::tolerance
-  int worst_vertex = -1;  ///< where the residual is largest
-  std::string failure;    ///< why not converged, empty otherwise
+  double residual = 0;                              ///< in the unit of SolverSettings::tolerance
+  int worst_vertex = -1;                            ///< where the residual is largest
+  int held_back = 0;                                ///< held vertices that a guard keeps from their targets
+  double linearize_seconds = 0, solve_seconds = 0;  ///< spent under a guard on Hessians and linear systems
+  std::string failure;                              ///< why the step could not be made, empty otherwise
+
+  bool made() const { return failure.empty(); }
 };
 
 /// What loads must know before the step of length dt from `state`.
@@ -58,8 +73,9 @@ class Stepper {
   Stepper(Stepper&&) noexcept;
   Stepper& operator=(Stepper&&) noexcept;
 
-  /// Advances `state` by one step. If the report says not converged, `state` is unchanged; it never holds
-  /// NaN.
+  /// Advances `state` by one step. If the report says that it was not made, `state` is unchanged; it never
+  /// holds NaN. With a guard: symplectic_euler is refused (Error(usage)); linearly_implicit_euler goes where
+  /// its one iteration leads as far as the guard lets it.
   StepReport step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                   State& state);
   /// Memory held between steps.
@@ -70,8 +86,7 @@ class Stepper {
   std::unique_ptr<Workspace> workspace_;
 };
 
-/// One step by a Stepper of its own. If the report says not converged, `state` is unchanged; it never holds
-/// NaN.
+/// One step by a Stepper of its own.
 StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                       State& state);
 

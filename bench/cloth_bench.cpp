@@ -1,0 +1,131 @@
+// Whole runs of cloth in contact: a drop onto a ball, a sheet that folds up on a floor, one that hangs from
+// two corners. Times are of frames at 60 Hz; nothing but the engine is timed.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "support/contact_scene.hpp"
+#include <benchmark/benchmark.h>
+
+#include "muslin/contact/crossings.hpp"
+#include "muslin/core/parallel.hpp"
+#include "muslin/simulation/simulation.hpp"
+
+namespace muslin {
+namespace {
+
+enum class Case { drop, fold, hang };
+
+/// n × n vertices, 1 m × 1 m.
+std::shared_ptr<const Model> make_model(Case which, int n, ContactMode mode, int steps_per_frame) {
+  test::ContactScene scene(steps_per_frame);
+  scene.mode = mode;
+  test::ClothGrid cloth(n, n, 1.0 / (n - 1));
+  switch (which) {
+    case Case::drop:
+      for (Vec3& p : cloth.positions) p += Vec3(-0.5, 0.3, -0.5);
+      scene.add_cloth(cloth);
+      scene.add_ball(Vec3::Zero(), 0.25);
+      break;
+    case Case::fold:
+      // Upright, a little bent so that it knows where to go.
+      for (Vec3& p : cloth.positions)
+        p = Vec3(p.x(), p.z() + 0.01, 0.02 * std::sin(3 * p.z()) + 0.005 * std::sin(7 * p.x()));
+      scene.friction = 0.4;
+      scene.add_cloth(cloth);
+      scene.add_plane(Vec3::Zero(), Vec3(0, 1, 0));
+      break;
+    case Case::hang:
+      scene.add_cloth(cloth);
+      scene.hold({0, n - 1});
+      break;
+  }
+  return scene.finish();
+}
+
+struct Settings {
+  Case which;
+  int n;
+  ContactMode mode;
+  int threads;
+};
+
+constexpr double seconds_of[] = {1.5, 1.5, 1.5};
+
+void run(benchmark::State& state, Settings settings) {
+  set_thread_count(settings.threads);
+  const bool fast = settings.mode == ContactMode::fast;
+  const auto model = make_model(settings.which, settings.n, settings.mode, 4);
+  const int frames = static_cast<int>(60 * seconds_of[static_cast<int>(settings.which)]);
+  double total = 0, worst = 0, stretch = 0, linear = 0, newton = 0, height = 0, gap = INFINITY, residual = 0;
+  std::size_t crossings = 0;
+  RunCosts costs;
+  for (auto _ : state) {
+    Simulation simulation(model);
+    for (int f = 0; f < frames; ++f) {
+      simulation.advance();
+      const Diagnostics& row = simulation.diagnostics();
+      total += row.wall_ms;
+      worst = std::max(worst, row.wall_ms);
+      stretch = std::max(stretch, row.max_stretch);
+      newton += row.newton_iterations;
+      linear += row.linear_iterations;
+      gap = std::min(gap, row.min_distance);
+      residual = std::max(residual, row.residual);
+      crossings += find_crossings(*model->contact, simulation.state().positions).size();
+    }
+    costs = simulation.costs();
+    state.SetIterationTime(1e-3 * total);
+    for (int v = 0; v < settings.n * settings.n; ++v)
+      height += simulation.state().positions[static_cast<std::size_t>(v)].y() / (settings.n * settings.n);
+  }
+  state.counters["ms"] = total / frames;
+  state.counters["worst_ms"] = worst;
+  state.counters["stretch"] = stretch;
+  state.counters["newton"] = newton / frames;
+  state.counters["linear"] = linear / frames;
+  state.counters["crossings"] = static_cast<double>(crossings);
+  state.counters["height"] = height;
+  state.counters["min_gap"] = gap;
+  state.counters["residual"] = residual;
+  state.counters["search_ms"] = 1e3 * costs.search / frames;
+  state.counters["limit_ms"] = 1e3 * costs.limit / frames;
+  state.counters["contact_ms"] = 1e3 * costs.contact / frames;
+  state.counters["assembly_ms"] = 1e3 * costs.linearize / frames;
+  state.counters["solve_ms"] = 1e3 * costs.solve / frames;
+  state.counters["searches"] = static_cast<double>(costs.searches) / frames;
+  state.counters["shortened"] = static_cast<double>(costs.shortened) / frames;
+  set_thread_count(0);
+  (void)fast;
+}
+
+void add(const std::string& name, Settings settings) {
+  const std::string mode = settings.mode == ContactMode::fast ? "fast" : "converged";
+  benchmark::RegisterBenchmark(
+      (name + "_" + std::to_string(settings.n) + "/" + mode + "/threads:" + std::to_string(settings.threads))
+          .c_str(),
+      [settings](benchmark::State& state) { run(state, settings); })
+      ->Iterations(1)
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace
+}  // namespace muslin
+
+int main(int argc, char** argv) {
+  using namespace muslin;
+  const std::map<std::string, Case> cases = {
+      {"drop", Case::drop}, {"fold", Case::fold}, {"hang", Case::hang}};
+  for (const auto& [name, which] : cases) {
+    for (const int n : {50, 100, 200}) {
+      for (const int threads : {1, 2}) add(name, {which, n, ContactMode::fast, threads});
+      add(name, {which, n, ContactMode::converged, 1});
+    }
+  }
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

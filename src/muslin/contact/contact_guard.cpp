@@ -1,0 +1,152 @@
+#include "muslin/contact/contact_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "muslin/core/error.hpp"
+#include "muslin/core/stopwatch.hpp"
+
+namespace muslin {
+namespace {
+
+/// Boxes of candidates are wider than the motion by this share of d̂.
+constexpr double margin_share = 0.5;
+/// Displacements of more edges than this are limited in pieces, of which there are no more than so many.
+constexpr double edges_at_once = 2;
+constexpr int most_pieces = 256;
+/// Friction is full at this speed [m/s].
+constexpr double stick_speed = 1e-3;
+
+/// Over edges of what is not fixed, infinite without any.
+double mean_edge(const ContactSurface& surface, ConstVectors rest) {
+  double sum = 0;
+  int count = 0;
+  for (const ContactSurface::Edge& e : surface.edges()) {
+    if (surface.bodies()[static_cast<std::size_t>(surface.body_of(e[0]))].fixed) continue;
+    sum += (rest[static_cast<std::size_t>(e[0])] - rest[static_cast<std::size_t>(e[1])]).norm();
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model)
+    : model_(std::move(model)),
+      candidates_(model_->surface, model_->rest, model_->distance),
+      limiter_(model_->map, model_->limits),
+      margin_(margin_share * model_->distance),
+      longest_(std::max(edges_at_once * mean_edge(*model_->surface, model_->rest), 4 * model_->distance)),
+      friction_{model_->friction, stick_speed},
+      x_(model_->map->point_count()),
+      to_(model_->map->point_count()) {}
+
+void ContactGuard::begin(ConstVectors q, double length) {
+  start_.assign(q.begin(), q.end());
+  friction_.stick_length = stick_speed * length;
+}
+
+void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end) {
+  const Stopwatch watch(counts_.search_seconds);
+  ++counts_.searches;
+  memory_.begin.assign(begin.begin(), begin.end());
+  memory_.end.assign(end.begin(), end.end());
+  candidates_.update(begin, end, margin_);
+}
+
+/// Makes sure that all pairs are known for the way from q to q + d.
+void ContactGuard::cover(ConstVectors q, ConstVectors d) {
+  model_->map->apply(q, x_);
+  model_->map->apply(d, to_);
+  bool covered = !candidates_.lower().empty();
+  for (std::size_t p = 0; p < x_.size(); ++p) {
+    to_[p] += x_[p];
+    if (!covered) continue;
+    const Vec3 &low = candidates_.lower()[p], &high = candidates_.upper()[p];
+    covered = (x_[p].array() >= low.array()).all() && (x_[p].array() <= high.array()).all() &&
+              (to_[p].array() >= low.array()).all() && (to_[p].array() <= high.array()).all();
+  }
+  if (!covered) find_candidates(x_, to_);
+}
+
+/// A displacement far beyond an edge's length is a blunder of the solver, and would make everything a
+/// candidate.
+void ContactGuard::shorten(Vectors d) const {
+  const StepLimits& limits = model_->limits;
+  std::vector<double> of_group;
+  for (std::size_t v = 0; v < d.size(); ++v) {
+    const double length = d[v].norm();
+    if (!(length > longest_)) continue;
+    const double factor = longest_ / length;
+    if (limits.groups.empty() || limits.groups[v] < 0) {
+      d[v] *= factor;
+      continue;
+    }
+    const auto g = static_cast<std::size_t>(limits.groups[v]);
+    if (g >= of_group.size()) of_group.resize(g + 1, 1);
+    of_group[g] = std::min(of_group[g], factor);
+  }
+  if (of_group.empty()) return;
+  for (std::size_t v = 0; v < d.size(); ++v) {
+    const int g = limits.groups[v];
+    if (g >= 0 && static_cast<std::size_t>(g) < of_group.size())
+      d[v] *= of_group[static_cast<std::size_t>(g)];
+  }
+}
+
+void ContactGuard::limit(ConstVectors q, Vectors d) {
+  shorten(d);
+  cover(q, d);
+  const Stopwatch watch(counts_.limit_seconds);
+  const LimitReport report = limiter_.limit(candidates_, q, d);
+  ++counts_.limits;
+  counts_.deflected += report.deflected;
+  counts_.shortened += report.shortened;
+}
+
+void ContactGuard::advance(Vectors q, ConstVectors d) {
+  double farthest = 0;
+  for (const Vec3& step : d) farthest = std::max(farthest, step.norm());
+  const double needed = std::ceil(farthest / longest_);
+  const int pieces = needed < most_pieces ? std::max(1, static_cast<int>(needed)) : most_pieces;
+  const std::vector<Vec3> from(q.begin(), q.end());
+  const StepLimits& limits = model_->limits;
+  piece_.resize(q.size());
+  for (int k = 1; k <= pieces; ++k) {
+    for (std::size_t v = 0; v < q.size(); ++v) {
+      // What moves along keyframes makes up for where it was held; what is pushed aside does not come back.
+      const bool prescribed = !limits.prescribed.empty() && limits.prescribed[v] != 0;
+      piece_[v] =
+          prescribed ? Vec3(from[v] + static_cast<double>(k) / pieces * d[v] - q[v]) : Vec3(d[v] / pieces);
+    }
+    limit(q, piece_);
+    for (std::size_t v = 0; v < q.size(); ++v) q[v] += piece_[v];
+  }
+}
+
+const Potential& ContactGuard::potential(ConstVectors q) {
+  if (candidates_.lower().empty()) {
+    piece_.assign(q.size(), Vec3::Zero());
+    cover(q, piece_);
+  }
+  const Stopwatch watch(counts_.potential_seconds);
+  potential_.emplace(candidates_, model_->map, q, friction_, start_, memory_.slips);
+  return *potential_;
+}
+
+void ContactGuard::end(ConstVectors q) {
+  memory_.slips = potential_->slips(q);
+  model_->map->apply(q, x_);
+  memory_.smallest_gap = candidates_.smallest_gap(x_);
+}
+
+void ContactGuard::restore(ContactMemory memory) {
+  const std::size_t points = model_->map->point_count();
+  if (memory.begin.size() != memory.end.size() || (!memory.begin.empty() && memory.begin.size() != points))
+    throw Error(ErrorKind::input, "the checkpoint's contact belongs to other surfaces", "start the run anew");
+  memory_ = std::move(memory);
+  if (!memory_.begin.empty()) candidates_.update(memory_.begin, memory_.end, margin_);
+}
+
+}  // namespace muslin

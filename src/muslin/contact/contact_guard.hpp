@@ -1,0 +1,74 @@
+// Contact of a run: joins search, limiter and energy into the guard that the solver asks, and remembers from
+// step to step what sticks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "muslin/contact/contact_candidates.hpp"
+#include "muslin/contact/contact_model.hpp"
+#include "muslin/contact/contact_potential.hpp"
+#include "muslin/contact/step_limiter.hpp"
+#include "muslin/potential/step_guard.hpp"
+
+namespace muslin {
+
+/// What contact remembers between steps, besides positions: a run that goes on with it gives the same bits.
+struct ContactMemory {
+  std::vector<PairSlip> slips;   ///< by ascending key
+  std::vector<Vec3> begin, end;  ///< what candidates were found for, #P by 3 [m]; empty: not yet
+  double smallest_gap =          ///< at the end of the last step [m]; infinite beyond d̂
+      std::numeric_limits<double>::infinity();
+};
+
+/// What a guard has done since it was made.
+struct ContactCounts {
+  std::size_t searches = 0;   ///< of candidates
+  std::size_t limits = 0;     ///< displacements limited
+  std::size_t deflected = 0;  ///< vertices that lost normal approach, summed over displacements
+  std::size_t shortened = 0;  ///< vertices shortened by conservative advancement
+  double search_seconds = 0, limit_seconds = 0, potential_seconds = 0;
+};
+
+class ContactGuard : public StepGuard {
+ public:
+  explicit ContactGuard(std::shared_ptr<const ContactModel> model);
+
+  void begin(ConstVectors q, double length) override;
+  void limit(ConstVectors q, Vectors d) override;
+  void advance(Vectors q, ConstVectors d) override;
+  const Potential& potential(ConstVectors q) override;
+  void end(ConstVectors q) override;
+
+  /// The potential asked for last.
+  const ContactPotential& last_potential() const { return *potential_; }
+  const ContactMemory& memory() const { return memory_; }
+  /// Errors: input, if it is of another surface.
+  void restore(ContactMemory memory);
+  void restore_slips(std::vector<PairSlip> slips) { memory_.slips = std::move(slips); }
+  const ContactCounts& counts() const { return counts_; }
+
+ private:
+  void find_candidates(ConstVectors begin, ConstVectors end);
+  void cover(ConstVectors q, ConstVectors d);
+  void shorten(Vectors d) const;
+
+  std::shared_ptr<const ContactModel> model_;
+  ContactCandidates candidates_;
+  StepLimiter limiter_;
+  double margin_;   ///< by which boxes of candidates are wider than the motion [m]
+  double longest_;  ///< displacement that is limited in one piece [m]
+  Friction friction_;
+  std::vector<Vec3> start_;  ///< q where the step began
+  std::optional<ContactPotential> potential_;
+  ContactMemory memory_;
+  ContactCounts counts_;
+  std::vector<Vec3> x_, to_, piece_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,135 @@
+#include "muslin/contact/crossings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/contact/contact_candidates.hpp"
+#include "muslin/contact/intersections.hpp"
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr std::size_t listed = 8;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// Some triangle of each point and edge, −1: none.
+struct Owners {
+  std::vector<int> of_point, of_edge;
+
+  explicit Owners(const ContactSurface& surface)
+      : of_point(surface.point_count(), -1), of_edge(surface.edges().size(), -1) {
+    for (std::size_t t = surface.triangles().size(); t-- > 0;) {
+      for (int i = 0; i < 3; ++i) {
+        of_point[index(surface.triangles()[t][i])] = static_cast<int>(t);
+        const int e = surface.triangle_edges()[t][i];
+        if (e >= 0) of_edge[index(e)] = static_cast<int>(t);
+      }
+    }
+  }
+};
+
+std::string body_name(const ContactModel& model, int body) {
+  if (index(body) < model.names.size()) return '"' + model.names[index(body)] + '"';
+  return "surface " + std::to_string(body);
+}
+
+std::string feature_name(const ContactModel& model, int triangle, int body) {
+  if (triangle < 0) return body_name(model, body);
+  if (!model.faces.empty())
+    return fmt::format("face {} of {}", model.faces[index(triangle)], body_name(model, body));
+  const std::span<const Vec3i> triangles = model.surface->triangles();
+  const auto first = std::find_if(triangles.begin(), triangles.end(),
+                                  [&](const Vec3i& t) { return model.surface->body_of(t[0]) == body; });
+  return fmt::format("triangle {} of {}", triangle - (first - triangles.begin()), body_name(model, body));
+}
+
+}  // namespace
+
+std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, std::size_t limit) {
+  const ContactSurface& surface = *model.surface;
+  std::vector<Vec3> x(surface.point_count());
+  model.map->apply(q, x);
+  const auto body_of = [&](int triangle) { return surface.body_of(surface.triangles()[index(triangle)][0]); };
+
+  std::vector<Crossing> all;
+  IntersectionOptions options;
+  options.limit = limit;
+  options.wanted = [&](int a, int b) { return surface.may_touch(body_of(a), body_of(b)); };
+  for (const Intersection& i : find_intersections(x, surface.triangles(), options))
+    all.push_back({Crossing::Kind::crossing, body_of(i.first), body_of(i.second), i.first, i.second, i.at});
+
+  ContactCandidates candidates(model.surface, model.rest, model.distance);
+  candidates.update(x, x, 0);
+  const Owners owners(surface);
+  std::vector<Crossing> close;
+  for (const ContactPair& pair : candidates.pairs()) {
+    const PairGeometry at = pair_geometry(surface, pair, x);
+    if (at.distance > pair.thickness) continue;
+    Crossing c;
+    const auto last = index(pair.point_count() - 1);
+    c.first_body = surface.body_of(pair.points[0]);
+    c.second_body = surface.body_of(pair.points[last]);
+    c.kind = Crossing::Kind::too_close;
+    if (pair.kind == PairKind::vertex_triangle) {
+      c.first_triangle = owners.of_point[index(pair.first)];
+      c.second_triangle = pair.second;
+    } else if (pair.kind == PairKind::edge_edge) {
+      c.first_triangle = owners.of_edge[index(pair.first)];
+      c.second_triangle = owners.of_edge[index(pair.second)];
+    } else {
+      c.kind = Crossing::Kind::beneath;
+      c.first_triangle = owners.of_point[index(pair.first)];
+    }
+    for (std::size_t i = 0; i < index(first_feature_size(pair.kind)); ++i)
+      c.at += at.weights[i] * x[index(pair.points[i])];
+    if (pair.kind != PairKind::point_plane && c.first_triangle > c.second_triangle) {
+      std::swap(c.first_triangle, c.second_triangle);
+      std::swap(c.first_body, c.second_body);
+    }
+    close.push_back(c);
+  }
+  const auto of_triangles = [](const Crossing& c) {
+    return std::tuple(c.first_triangle, c.second_triangle, c.first_body, c.second_body);
+  };
+  const auto before = [&](const Crossing& a, const Crossing& b) { return of_triangles(a) < of_triangles(b); };
+  std::stable_sort(close.begin(), close.end(), before);
+  const std::size_t crossing = all.size();
+  for (const Crossing& c : close) {
+    if (all.size() >= limit) break;
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(crossing);
+    const auto same = std::lower_bound(all.begin(), end, c, before);
+    if (same != end && of_triangles(*same) == of_triangles(c)) continue;
+    if (all.size() > crossing && of_triangles(all.back()) == of_triangles(c)) continue;
+    all.push_back(c);
+  }
+  return all;
+}
+
+std::string describe(const ContactModel& model, const Crossing& c) {
+  const char* verb = c.kind == Crossing::Kind::crossing    ? "crosses"
+                     : c.kind == Crossing::Kind::too_close ? "is closer than the thickness to"
+                                                           : "lies beneath";
+  return fmt::format("{} {} {} near ({:.4g}, {:.4g}, {:.4g}) m",
+                     feature_name(model, c.first_triangle, c.first_body), verb,
+                     feature_name(model, c.second_triangle, c.second_body), c.at.x(), c.at.y(), c.at.z());
+}
+
+void refuse_crossings(const ContactModel& model, ConstVectors q) {
+  const std::vector<Crossing> found = find_crossings(model, q);
+  if (found.empty()) return;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(found.size(), listed); ++i)
+    list += (i > 0 ? "; " : "") + describe(model, found[i]);
+  if (found.size() > listed) list += fmt::format("; and {} more", found.size() - listed);
+  throw Error(ErrorKind::input, fmt::format("surfaces cross at the start: {}", list),
+              "move them apart, or allow tangled surfaces (--allow-tangled), which leaves these free until "
+              "they part");
+}
+
+}  // namespace muslin

@@ -1,0 +1,40 @@
+// What is wrong with positions from which contact cannot start: surfaces that cross, or are closer than their
+// thickness lets them be.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "muslin/contact/contact_model.hpp"
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+struct Crossing {
+  enum class Kind {
+    crossing,   ///< two triangles meet, by the exact test
+    too_close,  ///< closer than their thicknesses, or a vertex inside a ball, a capsule
+    beneath,    ///< a vertex beneath a plane
+  };
+  Kind kind = Kind::crossing;
+  int first_body = 0, second_body = 0;  ///< of the surface
+  /// Of the surface; −1 for a plane, or for a vertex that belongs to no triangle.
+  int first_triangle = -1, second_triangle = -1;
+  Vec3 at = Vec3::Zero();  ///< where [m]
+
+  friend bool operator==(const Crossing&, const Crossing&) = default;
+};
+
+/// The first `limit` at q (#V by 3, [m]): triangles that meet in ascending order, then what is too close,
+/// each two triangles once. Pairs of bodies that may not touch are left out. Errors: usage, if a position is
+/// not finite.
+std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, std::size_t limit = 1000000);
+
+/// One line, such as: face 12 of "cloth" crosses face 3 of "table" near (0.1, 0.2, 0.3) m.
+std::string describe(const ContactModel& model, const Crossing& crossing);
+
+/// Throws Error(input) that lists the first few, if there is any.
+void refuse_crossings(const ContactModel& model, ConstVectors q);
+
+}  // namespace muslin

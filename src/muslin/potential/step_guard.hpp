@@ -1,0 +1,33 @@
+// What keeps a motion safe where no energy and no single step length can: surfaces that may not cross. The
+// solver asks a guard before it moves anything; contact is one (contact/contact_guard.hpp).
+#pragma once
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/potential/potential.hpp"
+
+namespace muslin {
+
+/// Guards one step at a time, from positions that are safe. All vectors are #V by 3, [m].
+class StepGuard {
+ public:
+  virtual ~StepGuard() = default;
+
+  /// A step of `length` [s] begins at x; one that was begun and not ended is forgotten.
+  virtual void begin(ConstVectors x, double length) = 0;
+
+  /// Changes the displacement d from x, vertex by vertex, such that the straight way to x + t d is safe for
+  /// all t in [0, 1]. `x` must have been reached from where the step began by such ways only.
+  virtual void limit(ConstVectors x, Vectors d) = 0;
+
+  /// Moves x by d as far as is safe, however long d is: by several ways as `limit` allows them.
+  virtual void advance(Vectors x, ConstVectors d) = 0;
+
+  /// The energy of contact near x, with what is lagged taken at x: to be asked for anew at every iterate.
+  /// Valid until the next call.
+  virtual const Potential& potential(ConstVectors x) = 0;
+
+  /// The step ends at x, under the potential that was asked for last.
+  virtual void end(ConstVectors x) = 0;
+};
+
+}  // namespace muslin

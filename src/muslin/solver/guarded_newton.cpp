@@ -1,0 +1,198 @@
+#include "muslin/solver/guarded_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "muslin/core/stopwatch.hpp"
+#include "muslin/solver/vector_operations.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr double armijo = 1e-4;
+constexpr double rounding = 1e-12;  // values closer than this (relative) cannot be told apart reliably
+constexpr double smallest_step = 1e-6;
+constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-3, fast_forcing = 0.05;
+
+class GuardedStep {
+ public:
+  GuardedStep(const StepProblem& problem, const IncrementalPotential& function,
+              const SolverSettings& settings, Vectors x, NewtonWorkspace& workspace)
+      : problem_(problem),
+        function_(function),
+        settings_(settings),
+        guard_(*problem.guard),
+        x_(x),
+        workspace_(workspace),
+        count_(x.size()),
+        scale_(function.dt() * function.dt()),
+        with_contact_(problem) {
+    for (auto* vectors : {&workspace.x, &workspace.g, &workspace.s, &base_, &d_}) vectors->resize(count_);
+    with_contact_.potentials.push_back(nullptr);
+  }
+
+  StepReport run() {
+    start();
+    StepReport report;
+    const bool fast = settings_.effort == Effort::fast;
+    const int most = fast ? settings_.fast_iterations : settings_.max_iterations;
+    for (;;) {
+      if (report.newton_iterations > 0 && held_back_ > 0) push_held();
+      find_gradient();
+      const IncrementalPotential::Imbalance imbalance = function_.imbalance(workspace_.g);
+      report.residual = imbalance.largest;
+      report.worst_vertex = imbalance.vertex;
+      report.held_back = held_back_;
+      if (!std::isfinite(imbalance.norm)) {
+        report.failure = "forces are not finite numbers";
+        break;
+      }
+      report.converged = imbalance.largest <= settings_.tolerance;
+      if (report.converged) break;
+      if (report.newton_iterations == most) {
+        if (!fast)
+          report.failure =
+              "the step is not in balance after " + std::to_string(most) + " Newton iterations under contact";
+        break;
+      }
+      {
+        const Stopwatch watch(report.linearize_seconds);
+        workspace_.inner.linearize(full(), x_);
+      }
+      if (imbalance.largest <= function_.rounding_floor(x_, workspace_.inner.stiffest())) {
+        report.converged = true;
+        break;
+      }
+      LinearSettings linear;
+      linear.tolerance =
+          fast ? fast_forcing
+               : std::clamp(0.3 * settings_.tolerance / imbalance.largest, tightest_forcing, loosest_forcing);
+      ++report.newton_iterations;
+      const auto try_to_move = [&] {
+        {
+          const Stopwatch watch(report.solve_seconds);
+          report.linear_iterations +=
+              solve_linear(full(), x_, workspace_.g, linear, workspace_.inner, workspace_.s).iterations;
+        }
+        for_each_vertex(count_, [&](std::size_t v) { workspace_.s[v] = -workspace_.s[v]; });
+        return all_finite(workspace_.s) && move();
+      };
+      if (try_to_move() || (workspace_.inner.project() && try_to_move())) continue;
+      if (!fast) report.failure = "no step lowers the energy any further";
+      break;
+    }
+    return report;
+  }
+
+ private:
+  /// To the inertial prediction and the targets.
+  void start() {
+    for_each_vertex(count_, [&](std::size_t v) {
+      d_[v] = (function_.held(v) ? problem_.targets[v] : function_.prediction()[v]) - x_[v];
+    });
+    guard_.advance(x_, d_);
+    held_back_ = land_held_vertices(problem_, x_);
+    value_ = function_.value_and_gradient(x_, base_);
+  }
+
+  /// Moves held vertices that were held back on, pushing what is in their way.
+  void push_held() {
+    for_each_vertex(count_, [&](std::size_t v) {
+      d_[v] = function_.held(v) ? Vec3(problem_.targets[v] - x_[v]) : Vec3(Vec3::Zero());
+    });
+    guard_.limit(x_, d_);
+    add(1, d_, x_);
+    held_back_ = land_held_vertices(problem_, x_);
+    value_ = function_.value_and_gradient(x_, base_);
+  }
+
+  /// Of everything, contact lagged at x.
+  void find_gradient() {
+    contact_ = &guard_.potential(x_);
+    with_contact_.potentials.back() = contact_;
+    std::vector<Vec3>& g = workspace_.g;
+    set_zero(g);
+    contact_value_ = contact_->add_gradient_and_value(x_, g);
+    for_each_vertex(count_, [&](std::size_t v) {
+      g[v] = function_.held(v) ? Vec3(Vec3::Zero()) : Vec3(base_[v] + scale_ * g[v]);
+    });
+  }
+
+  IncrementalPotential full() const { return {with_contact_, function_.prediction(), function_.dt()}; }
+
+  /// Moves x along the limited step as far as the energy falls; value_ and base_ with it.
+  bool move() {
+    const std::vector<Vec3>&g = workspace_.g, &s = workspace_.s;
+    const auto limited = [&](double share) {
+      for_each_vertex(count_, [&](std::size_t v) {
+        d_[v] = function_.held(v) ? Vec3(Vec3::Zero()) : Vec3(share * s[v]);
+      });
+      guard_.limit(x_, d_);
+      return dot(g, d_);
+    };
+    double slope = limited(1);
+    for (double share = 0.5; !(slope < 0); share *= 0.5) {
+      // What is left of the step leads uphill: a shorter one is limited less.
+      if (share < smallest_step) return false;
+      slope = limited(share);
+    }
+    const double before = value_.value + scale_ * contact_value_;
+    const double allowance = rounding * (value_.magnitude + scale_ * std::abs(contact_value_));
+    std::vector<Vec3>& there = workspace_.x;
+    for (double t = 1; t > smallest_step;) {
+      combine(x_, t, d_, there);
+      const double contact = contact_->value(there);
+      const IncrementalPotential::Value value = function_.value_and_gradient(there, base_);
+      const double change = value.value + scale_ * contact - before;
+      if (change <= armijo * t * slope || std::abs(change) <= allowance) {
+        std::copy(there.begin(), there.end(), x_.begin());
+        value_ = value;
+        return true;
+      }
+      const double parabola = -0.5 * slope * t * t / (change - t * slope);
+      t = std::isfinite(change) && std::isfinite(parabola) ? std::clamp(parabola, 0.1 * t, 0.5 * t) : 0.1 * t;
+    }
+    return false;
+  }
+
+  const StepProblem& problem_;
+  const IncrementalPotential& function_;
+  const SolverSettings& settings_;
+  StepGuard& guard_;
+  Vectors x_;
+  NewtonWorkspace& workspace_;
+  std::size_t count_;
+  double scale_;
+  StepProblem with_contact_;
+  const Potential* contact_ = nullptr;
+  IncrementalPotential::Value value_;  ///< at x, without contact
+  double contact_value_ = 0;
+  int held_back_ = 0;
+  std::vector<Vec3> base_, d_;  ///< the gradient without contact; the limited step
+};
+
+}  // namespace
+
+int land_held_vertices(const StepProblem& problem, Vectors x) {
+  constexpr double near = 1e-14;
+  int held_back = 0;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (problem.fixed[v] == 0) continue;
+    const Vec3& target = problem.targets[v];
+    if ((x[v] - target).cwiseAbs().maxCoeff() <= near * target.cwiseAbs().maxCoeff()) {
+      x[v] = target;
+    } else {
+      ++held_back;
+    }
+  }
+  return held_back;
+}
+
+StepReport minimize_guarded(const StepProblem& problem, const IncrementalPotential& function,
+                            const SolverSettings& settings, Vectors x, NewtonWorkspace& workspace) {
+  return GuardedStep(problem, function, settings, x, workspace).run();
+}
+
+}  // namespace muslin
