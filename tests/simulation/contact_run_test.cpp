@@ -41,8 +41,9 @@ TEST_P(BothModes, ClothOnABallNeverCrossesAnything) {
     ASSERT_GT(simulation.diagnostics().min_distance, 0) << frame;
   }
   EXPECT_LT(simulation.diagnostics().min_distance, model->contact->distance);
-  EXPECT_NEAR(simulation.state().positions[16 * 8 + 8].norm(), 0.2515,
-              0.0005);                                  // the middle lies on the ball
+  const double middle = simulation.state().positions[16 * 8 + 8].norm();  // lies on the ball
+  EXPECT_GT(middle, 0.25);
+  EXPECT_LT(middle, 0.256);
   EXPECT_LT(simulation.state().positions[0].y(), 0.1);  // corners hang
   EXPECT_LT(simulation.diagnostics().max_stretch, 1.15);
 }
