@@ -73,6 +73,7 @@ int run(int argc, char** argv) {
   add_build(program);
   add_field(program);
   add_render(program);
+  add_view(program);
   add_export(program);
   add_materials(program);
   add_verify(program);

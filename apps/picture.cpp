@@ -1,69 +1,12 @@
 #include "picture.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace muslin::app {
 namespace {
-
-const std::array<Vec3, 5> body_colours = {Vec3(0.72, 0.20, 0.17), Vec3(0.16, 0.42, 0.62),
-                                          Vec3(0.82, 0.60, 0.20), Vec3(0.30, 0.52, 0.32),
-                                          Vec3(0.50, 0.34, 0.58)};
-
-/// The edges of a mesh at rest: what stretch is measured on.
-class EdgeStretch {
- public:
-  explicit EdgeStretch(const Mesh& mesh) {
-    std::map<std::pair<int, int>, double> edges;
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-      const auto corners = mesh.face(f);
-      for (std::size_t c = 0; c < corners.size(); ++c) {
-        const int a = std::min(corners[c], corners[(c + 1) % corners.size()]);
-        const int b = std::max(corners[c], corners[(c + 1) % corners.size()]);
-        const double length =
-            (mesh.positions[static_cast<std::size_t>(a)] - mesh.positions[static_cast<std::size_t>(b)])
-                .norm();
-        if (length > 0) edges[{a, b}] = length;
-      }
-    }
-    edges_.assign(edges.begin(), edges.end());
-  }
-
-  /// Per vertex, the largest stretch of its edges in percent of the rest length; compression counts as 0.
-  std::vector<double> at(ConstVectors x) const {
-    std::vector<double> stretch(x.size(), 0.0);
-    for (const auto& [ends, rest] : edges_) {
-      const auto a = static_cast<std::size_t>(ends.first), b = static_cast<std::size_t>(ends.second);
-      const double percent = 100 * ((x[a] - x[b]).norm() / rest - 1);
-      stretch[a] = std::max(stretch[a], percent);
-      stretch[b] = std::max(stretch[b], percent);
-    }
-    return stretch;
-  }
-
- private:
-  std::vector<std::pair<std::pair<int, int>, double>> edges_;
-};
-
-/// As the scene says, else from the palette.
-std::vector<Vec3> colours_of(const RunReader& run) {
-  std::vector<Vec3> colours;
-  const auto scene = nlohmann::json::parse(run.resolved_scene());
-  for (std::size_t b = 0; b < run.bodies().size(); ++b) {
-    Vec3 colour = body_colours[b % body_colours.size()];
-    if (scene.contains("body") && b < scene["body"].size() && scene["body"][b].contains("colour")) {
-      const auto& rgb = scene["body"][b]["colour"];
-      colour = Vec3(rgb[0].get<double>(), rgb[1].get<double>(), rgb[2].get<double>());
-    }
-    colours.push_back(colour);
-  }
-  return colours;
-}
 
 std::vector<Vec3> in_double(const std::vector<Vec3f>& points) {
   std::vector<Vec3> result;
@@ -105,10 +48,9 @@ RunPictures::RunPictures(RunReader run, const PictureOptions& options, const Pro
   else
     p.bodies.push_back(p.run.find_body(options.body));
   SceneView scene;
-  const std::vector<Vec3> colours = colours_of(p.run);
   for (int body : p.bodies) {
     const Mesh& mesh = p.run.mesh(body, options.surface);
-    const Vec3& colour = colours[static_cast<std::size_t>(body)];
+    const Vec3 colour = p.run.colour(body);
     scene.surfaces.push_back(make_surface(mesh, is_closed(mesh) ? solid_look(colour) : fabric_look(colour)));
     if (options.stretch) p.stretch.emplace_back(mesh);
   }

@@ -26,4 +26,6 @@
 #include "muslin/scene/scene.hpp"
 #include "muslin/simulation/simulation.hpp"
 #include "muslin/surface/contour.hpp"
+#include "muslin/surface/edge_stretch.hpp"
 #include "muslin/version.hpp"
+#include "muslin/view/view_page.hpp"

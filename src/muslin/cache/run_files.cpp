@@ -57,7 +57,7 @@ namespace {
 
 const std::vector<std::string>& own_names() {
   static const std::vector<std::string> names = {"scene.toml", "diagnostics.csv", "probes.csv", "stats.json",
-                                                 "run.json"};
+                                                 "selections.json", "run.json"};
   return names;
 }
 

@@ -38,6 +38,9 @@ struct Track {
   }
 };
 
+const std::array<Vec3, 5> palette = {Vec3(0.72, 0.20, 0.17), Vec3(0.16, 0.42, 0.62), Vec3(0.82, 0.60, 0.20),
+                                     Vec3(0.30, 0.52, 0.32), Vec3(0.50, 0.34, 0.58)};
+
 struct BodyTracks {
   Track skin;
   std::optional<Track> contour, lattice;  // not of shells
@@ -66,6 +69,7 @@ struct RunReader::Parts {
   std::vector<std::string> names;
   std::vector<BodyTracks> bodies;
   std::vector<Diagnostics> diagnostics;
+  Selections selections;
   int frames = 0;
   double frame_rate = 24;
 
@@ -127,6 +131,10 @@ RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
     }
     parts.bodies.push_back(std::move(tracks));
   }
+  std::vector<std::size_t> points;
+  for (const BodyTracks& body : parts.bodies)
+    points.push_back(body.lattice ? body.lattice->cache.points() : body.skin.cache.points());
+  parts.selections = read_selections(parts.directory / "selections.json", parts.names, points);
   parts.diagnostics.resize(frames);
   parts.frames = static_cast<int>(frames);
 }
@@ -140,8 +148,24 @@ const std::string& RunReader::title() const { return parts_->title; }
 std::string RunReader::resolved_scene() const { return parts_->run.value("scene", Json()).dump(); }
 double RunReader::frame_rate() const { return parts_->frame_rate; }
 int RunReader::frame_count() const { return parts_->frames; }
+int RunReader::last_frame() const {
+  const Json last = parts_->run.value("frames", Json());
+  return std::max(parts_->frames - 1, last.is_number_integer() ? last.get<int>() : 0);
+}
 const std::vector<std::string>& RunReader::bodies() const { return parts_->names; }
 const std::vector<Diagnostics>& RunReader::diagnostics() const { return parts_->diagnostics; }
+const Selections& RunReader::selections() const { return parts_->selections; }
+
+Vec3 RunReader::colour(int body) const {
+  const auto b = static_cast<std::size_t>(body);
+  const Json scene = parts_->run.value("scene", Json());
+  const auto place = Json::json_pointer("/body/" + std::to_string(b) + "/colour");
+  const Json own = scene.is_object() ? scene.value(place, Json()) : Json();
+  const auto is_number = [](const Json& value) { return value.is_number(); };
+  if (!own.is_array() || own.size() != 3 || !std::all_of(own.begin(), own.end(), is_number))
+    return palette[b % palette.size()];
+  return {own[0].get<double>(), own[1].get<double>(), own[2].get<double>()};
+}
 
 RunStatus RunReader::status() const {
   const std::string status = parts_->run.value("status", "");

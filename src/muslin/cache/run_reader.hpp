@@ -9,6 +9,7 @@
 
 #include "muslin/cache/point_cache.hpp"
 #include "muslin/cache/run_writer.hpp"
+#include "muslin/cache/selections.hpp"
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/simulation/simulation.hpp"
 
@@ -37,9 +38,13 @@ class RunReader {
   std::string resolved_scene() const;  ///< JSON, as Scene::resolved
   double frame_rate() const;           ///< [1/s]
   int frame_count() const;
+  int last_frame() const;  ///< that the run has or, unfinished, was to reach
   const std::vector<std::string>& bodies() const;
   /// Index of a body by name; an empty name means the only body. Error(usage) naming the bodies there are.
   int find_body(const std::string& name) const;
+
+  /// In pictures, sRGB 0…1: as the scene says, else from a palette.
+  Vec3 colour(int body) const;
 
   /// A shell has a skin, and neither contour nor lattice.
   bool is_shell(int body) const;
@@ -60,6 +65,9 @@ class RunReader {
   const LatticeShape& lattice(int body) const;
   std::vector<Vec3f> lattice_points(int body, int frame) const;
   std::vector<Vec3f> lattice_velocities(int body, int frame) const;
+
+  /// What the pins and the point forces hold, as the last session of the run had them.
+  const Selections& selections() const;
 
   /// Rows of diagnostics.csv, frames 0 … frame_count() − 1.
   const std::vector<Diagnostics>& diagnostics() const;

@@ -14,6 +14,7 @@
 #include "muslin/cache/directory_lock.hpp"
 #include "muslin/cache/point_cache.hpp"
 #include "muslin/cache/run_files.hpp"
+#include "muslin/cache/selections.hpp"
 #include "muslin/cache/tables.hpp"
 #include "muslin/cache/vtk_file.hpp"
 #include "muslin/core/error.hpp"
@@ -142,6 +143,7 @@ void RunWriter::Parts::start() {
   const Model& model = this->model();
   write_atomically(directory / "scene.toml", model.scene.text);
   write_atomically(directory / "stats.json", statistics_json(model));
+  write_atomically(directory / "selections.json", selections_json(model));
   for (const Body& body : model.bodies) {
     const BodyFiles files = body_files(body.name);
     write_mesh(directory / files.skin_mesh, body.mesh);
@@ -339,6 +341,7 @@ RunWriter::RunWriter(fs::path directory, Simulation& simulation, int total_frame
     return;
   }
   write_atomically(parts_->directory / "scene.toml", simulation.model().scene.text);
+  write_atomically(parts_->directory / "selections.json", selections_json(simulation.model()));
   parts_->prune_checkpoints();
   parts_->write_summary(RunStatus::running, "");
 }

@@ -1,0 +1,108 @@
+#include "muslin/cache/selections.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "muslin/core/error.hpp"
+#include "muslin/core/input_file.hpp"
+#include "muslin/scene/select.hpp"
+
+namespace muslin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json common(const Chosen& chosen, const Model& model) {
+  return {{"name", chosen.name}, {"body", model.bodies[static_cast<std::size_t>(chosen.body)].name}};
+}
+
+/// Errors: any exception of Json, and std::out_of_range.
+Chosen parsed(const Json& entry, const std::vector<std::string>& bodies,
+              const std::vector<std::size_t>& points) {
+  Chosen chosen;
+  chosen.name = entry.at("name").get<std::string>();
+  const auto body = std::find(bodies.begin(), bodies.end(), entry.at("body").get<std::string>());
+  if (body == bodies.end()) throw std::out_of_range("body");
+  chosen.body = static_cast<int>(body - bodies.begin());
+  const std::size_t count = points[static_cast<std::size_t>(chosen.body)];
+  for (const Json& vertex : entry.at("vertices")) {
+    const auto v = vertex.get<std::int64_t>();
+    if (v < 0 || static_cast<std::size_t>(v) >= count) throw std::out_of_range("vertex");
+    chosen.vertices.push_back(static_cast<int>(v));
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Selections selections_of(const Model& model) {
+  Selections selections;
+  for (const Pin& pin : model.pins) {
+    if (pin.vertices.empty()) continue;
+    const auto holds = [&pin](const Body& body) {
+      return pin.vertices.front() < body.first_vertex + body.vertex_count;
+    };
+    const auto body = std::find_if(model.bodies.begin(), model.bodies.end(), holds);
+    Chosen chosen{pin.name, static_cast<int>(body - model.bodies.begin()), {}, pin.from, pin.until, -1};
+    for (const int v : pin.vertices) chosen.vertices.push_back(v - body->first_vertex);
+    selections.pins.push_back(std::move(chosen));
+  }
+  for (std::size_t f = 0; f < model.scene.forces.size(); ++f) {
+    const ForceSettings& force = model.scene.forces[f];
+    if (force.type != ForceSettings::Type::point) continue;
+    const auto body = std::find_if(model.bodies.begin(), model.bodies.end(),
+                                   [&](const Body& each) { return each.name == force.body; });
+    if (body == model.bodies.end()) continue;
+    selections.point_forces.push_back({force.name, static_cast<int>(body - model.bodies.begin()),
+                                       select_vertices(*body, force.where, "force " + force.name), force.from,
+                                       force.until, static_cast<int>(f)});
+  }
+  return selections;
+}
+
+std::string selections_json(const Model& model) {
+  const Selections selections = selections_of(model);
+  Json json = {{"pins", Json::array()}, {"point_forces", Json::array()}};
+  for (const Chosen& pin : selections.pins) {
+    Json entry = common(pin, model);
+    entry["from"] = pin.from;
+    entry["until"] = std::isfinite(pin.until) ? Json(pin.until) : Json(nullptr);
+    entry["vertices"] = pin.vertices;
+    json["pins"].push_back(std::move(entry));
+  }
+  for (const Chosen& force : selections.point_forces) {
+    Json entry = common(force, model);
+    entry["force"] = force.force;
+    entry["vertices"] = force.vertices;
+    json["point_forces"].push_back(std::move(entry));
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Selections read_selections(const std::filesystem::path& path, const std::vector<std::string>& bodies,
+                           const std::vector<std::size_t>& points) {
+  Selections selections;
+  if (!std::filesystem::exists(path)) return selections;
+  const Json json = Json::parse(read_file(path), nullptr, false);
+  try {
+    for (const Json& entry : json.at("pins")) {
+      selections.pins.push_back(parsed(entry, bodies, points));
+      selections.pins.back().from = entry.at("from").get<double>();
+      selections.pins.back().until = entry.at("until").is_null() ? std::numeric_limits<double>::infinity()
+                                                                 : entry.at("until").get<double>();
+    }
+    for (const Json& entry : json.at("point_forces")) {
+      selections.point_forces.push_back(parsed(entry, bodies, points));
+      selections.point_forces.back().force = entry.at("force").get<int>();
+    }
+  } catch (const std::exception&) {
+    throw Error(ErrorKind::input, {path.string()}, "the list of held vertices is damaged",
+                "remove the file to go on without it, or run the scene again");
+  }
+  return selections;
+}
+
+}  // namespace muslin

@@ -1,0 +1,34 @@
+// selections.json: which vertices the pins and point forces of a run hold.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "muslin/scene/model.hpp"
+
+namespace muslin {
+
+/// The vertices that a `where` of the scene chose, numbered as in the cache of the body's lattice, or of the
+/// skin of a shell.
+struct Chosen {
+  std::string name;
+  int body = 0;
+  std::vector<int> vertices;   ///< ascending
+  double from = 0, until = 0;  ///< [s] of a pin: when it holds; `until` may be infinite
+  int force = -1;              ///< of a point force: its place among the forces of the resolved scene
+};
+
+struct Selections {
+  std::vector<Chosen> pins, point_forces;
+};
+
+Selections selections_of(const Model& model);
+std::string selections_json(const Model& model);
+
+/// `points`: per body, how many points its cache has. Empty if the file does not exist: versions before 0.1
+/// did not write it. Errors: file; input, if it is damaged.
+Selections read_selections(const std::filesystem::path& path, const std::vector<std::string>& bodies,
+                           const std::vector<std::size_t>& points);
+
+}  // namespace muslin

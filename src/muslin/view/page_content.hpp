@@ -1,0 +1,36 @@
+// What a page shows of a run, gathered once: points that move, surfaces on them, pins, forces, curves.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "muslin/cache/run_reader.hpp"
+#include "muslin/core/progress.hpp"
+
+namespace muslin {
+
+/// Points that move: all or some of one of the run's caches.
+struct PageTrack {
+  enum class Source { skin, contour, lattice } source = Source::skin;
+  int body = 0;
+  bool all = true;
+  std::vector<int> picked;  ///< otherwise: which points of the cache
+  std::size_t count = 0;
+  Vec3 low = Vec3::Zero(), size = Vec3::Zero();  ///< the box of their whole motion [m]
+
+  std::vector<Vec3f> at(const RunReader& run, int frame) const;
+};
+
+struct PageContent {
+  nlohmann::ordered_json head;    ///< describes everything; arrays by their place in `arrays`
+  std::string arrays;             ///< numbers, little-endian, each array at a multiple of 4
+  std::vector<PageTrack> tracks;  ///< in the order in which frames hold them
+};
+
+/// Errors: input, if a position is not finite.
+PageContent page_content(const RunReader& run, bool skins_only, const Progress& progress);
+
+}  // namespace muslin

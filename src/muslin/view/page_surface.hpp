@@ -1,0 +1,33 @@
+// A surface as a page draws it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "muslin/cache/run_reader.hpp"
+#include "muslin/geometry/mesh.hpp"
+
+namespace muslin {
+
+/// Corners of triangles are drawn vertices: one for every point, smooth normal and place in the pattern that
+/// meet. Edges that are sharp at rest stay crisp; seams of the pattern do not crease.
+struct PageSurface {
+  std::vector<std::uint32_t> triangles;  ///< 3 × #T drawn vertices
+  std::vector<std::uint32_t> points;     ///< #D, the point that moves each drawn vertex
+  std::vector<std::uint32_t> normals;    ///< #D, which of the smooth normals it has
+  std::size_t normal_count = 0;
+  std::vector<float> pattern;       ///< 2 × #D places in the pattern [m]
+  std::vector<std::uint32_t> ends;  ///< 2 × #E points: edges of the polygons
+  std::vector<float> rest_lengths;  ///< #E [m]
+};
+
+PageSurface page_surface(const Mesh& mesh);
+
+/// The outside of a lattice: the faces of its voxels that lie between none and one, turned outwards.
+struct LatticeOutside {
+  Mesh mesh;
+  std::vector<int> vertices;  ///< of the lattice, of each vertex of the mesh; ascending
+};
+LatticeOutside outside_of(const RunReader::LatticeShape& lattice);
+
+}  // namespace muslin

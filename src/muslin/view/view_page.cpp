@@ -1,0 +1,172 @@
+#include "muslin/view/view_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "muslin/core/error.hpp"
+#include "muslin/core/output_file.hpp"
+#include "muslin/view/deflater.hpp"
+#include "muslin/view/page_content.hpp"
+#include "muslin/view/page_template.hpp"
+#include "muslin/view/point_packer.hpp"
+
+namespace muslin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string escaped_for_html(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += c;
+    }
+  }
+  return safe;
+}
+
+/// JSON that no text in it can end: inside a script element only "<" could.
+std::string escaped_for_script(const Json& json) {
+  std::string safe;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<')
+      safe += "\\u003c";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+/// Every stride-th frame, and the last.
+std::vector<int> chosen_frames(int count, int stride) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < count; frame += stride) frames.push_back(frame);
+  if (frames.back() != count - 1) frames.push_back(count - 1);
+  return frames;
+}
+
+/// The arrays and the frames, packed; or how far it came before it grew too large.
+struct Packed {
+  std::optional<std::string> data;
+  double share = 1;  ///< of the frames
+};
+
+Packed pack(const RunReader& run, const PageContent& content, const std::vector<int>& frames,
+            std::uint64_t largest, const Progress& progress) {
+  Deflater deflater;
+  deflater.append(content.arrays);
+  std::vector<PointPacker> packers;
+  for (const PageTrack& track : content.tracks) packers.emplace_back(track.low, track.size, track.count);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    progress.at(static_cast<double>(f) / static_cast<double>(frames.size()), "packing");
+    for (std::size_t t = 0; t < packers.size(); ++t) {
+      std::string record;
+      packers[t].append(content.tracks[t].at(run, frames[f]), record);
+      deflater.append(record);
+    }
+    if (deflater.size() > largest)
+      return {std::nullopt, static_cast<double>(f + 1) / static_cast<double>(frames.size())};
+  }
+  std::string data = deflater.finish();
+  if (data.size() > largest) return {};
+  return {std::move(data), 1};
+}
+
+struct Page {
+  PageContent content;
+  std::vector<int> frames;
+  std::string data;
+  std::vector<std::string> notes;
+};
+
+/// As much of the run as fits.
+Page fitting_page(const RunReader& run, std::uint64_t largest, const std::string& limit,
+                  const Progress& progress) {
+  const int count = run.frame_count();
+  Page page;
+  const auto try_frames = [&](int stride) {
+    page.frames = chosen_frames(count, stride);
+    Packed packed = pack(run, page.content, page.frames, largest, progress);
+    if (packed.data) page.data = std::move(*packed.data);
+    return packed;
+  };
+  page.content = page_content(run, false, progress);
+  Packed packed = try_frames(1);
+  if (packed.data) return page;
+  const std::size_t tracks = page.content.tracks.size();
+  page.content = page_content(run, true, progress);
+  if (page.content.tracks.size() < tracks) {
+    page.notes.push_back("Contour and lattice are left out to keep the page below " + limit + ".");
+    packed = try_frames(1);
+  }
+  int stride = 1;
+  while (!packed.data) {
+    if (page.frames.size() <= 2)
+      throw Error(ErrorKind::usage, {run.directory().string()},
+                  "not even two frames fit into a page of " + limit, "allow more with --max-size");
+    const int guess = static_cast<int>(std::ceil(stride / packed.share));
+    stride = std::min(count - 1, std::max(stride + 1, guess));
+    packed = try_frames(stride);
+  }
+  if (stride > 1)
+    page.notes.push_back(fmt::format("Every {} frame is shown, to keep the page below {}.",
+                                     stride == 2   ? "second"
+                                     : stride == 3 ? "third"
+                                                   : fmt::format("{}th", stride),
+                                     limit));
+  return page;
+}
+
+}  // namespace
+
+ViewReport write_view(const RunReader& run, const std::filesystem::path& file, const ViewOptions& options,
+                      const Progress& progress) {
+  if (run.frame_count() == 0) {
+    throw Error(ErrorKind::input, {run.directory().string()}, "the run has no finished frame",
+                "run the scene first");
+  }
+  WholeFile out(file);
+  const std::string_view page = page_template();
+  const std::string limit = fmt::format("{:g} MB", static_cast<double>(options.largest_bytes) / 1e6);
+  const std::uint64_t fixed = page.size() + 20'000;  // with room for the description
+  const std::uint64_t room = options.largest_bytes > fixed ? (options.largest_bytes - fixed) / 4 * 3 : 0;
+  Page fitting = fitting_page(run, room, limit, progress);
+  fitting.content.head["frames"] = fitting.frames;
+  fitting.content.head["frames_at"] = fitting.content.arrays.size();
+  fitting.content.head["notes"] = fitting.notes;
+
+  const std::string title = escaped_for_html(fitting.content.head["title"].get<std::string>());
+  const std::string content =
+      "<script id=\"run\" type=\"application/json\">" + escaped_for_script(fitting.content.head) +
+      "</script>\n<script id=\"data\" type=\"text/plain\">" + base64(fitting.data) + "</script>";
+  const std::size_t title_at = page.find("%TITLE%"), run_at = page.find("%RUN%");
+  out.append(page.substr(0, title_at));
+  out.append(title);
+  out.append(page.substr(title_at + 7, run_at - title_at - 7));
+  out.append(content);
+  out.append(page.substr(run_at + 5));
+  ViewReport report;
+  report.bytes = out.file().size();
+  report.frames = static_cast<int>(fitting.frames.size());
+  report.notes = std::move(fitting.notes);
+  out.commit();
+  return report;
+}
+
+}  // namespace muslin
