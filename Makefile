@@ -2,11 +2,14 @@
 BUILD := build/release
 JOBS ?= $(shell nproc)
 
-.PHONY: build demo test setup clean pictures asan tsan fuzz tidy format
+.PHONY: build demo test setup setup-tests clean pictures asan tsan fuzz tidy format
 .DEFAULT_GOAL := build
 
 setup:            ## installs the Debian packages muslin builds on, if any is missing
 	@tools/setup
+
+setup-tests:      ## and those that only the tests need: a browser, node
+	@tools/setup --tests
 
 $(BUILD)/build.ninja: CMakeLists.txt CMakePresets.json | setup
 	cmake --preset release $(if $(CI),-DMUSLIN_WERROR=ON)
@@ -14,10 +17,10 @@ $(BUILD)/build.ninja: CMakeLists.txt CMakePresets.json | setup
 build: setup $(BUILD)/build.ninja   ## the program, at build/release/muslin
 	cmake --build $(BUILD) -j $(JOBS) --target muslin_program
 
-demo: build       ## runs the two-corner flag; movie and poster under out/
+demo: build       ## runs the two-corner flag; movie, poster and a page for the browser under out/
 	tools/demo $(BUILD)/muslin
 
-test: setup $(BUILD)/build.ninja    ## every test
+test: setup-tests $(BUILD)/build.ninja    ## every test
 	cmake --build $(BUILD) -j $(JOBS)
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
 
@@ -32,7 +35,7 @@ tidy:             ## clang-tidy over the sources
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
 
-pictures: build   ## the pictures of the README; `tools/make_pictures --movies` films every scene
+pictures: build setup-tests   ## the pictures of the README; `tools/make_pictures --movies` films every scene
 	tools/make_pictures $(BUILD)/muslin
 
 clean:

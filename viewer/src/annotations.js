@@ -24,13 +24,29 @@ const active = (thing, time) =>
 
 const magnitude = (v) => Math.hypot(...v);
 
+/** The mean distance of points from their nearest neighbours; infinite for one point. */
+function spacing(positions) {
+  let sum = 0;
+  for (let a = 0; a < positions.length; a += 3) {
+    let nearest = Infinity;
+    for (let b = 0; b < positions.length; b += 3) {
+      if (a === b) continue;
+      nearest = Math.min(nearest, Math.hypot(positions[a] - positions[b], positions[a + 1] - positions[b + 1],
+        positions[a + 2] - positions[b + 2]));
+    }
+    sum += nearest;
+  }
+  return (3 * sum) / positions.length;
+}
+
 class Pin {
-  constructor(run, description, radius) {
+  constructor(run, description, largestRadius) {
     this.description = description;
     this.track = run.tracks[description.track];
-    this.positions = new Float32Array(3 * this.track.count);
-    const small = this.track.count > 40 ? 0.6 : 1;
-    this.object = new InstancedMesh(new SphereGeometry(small * radius, 16, 10),
+    this.positions = this.track.read({ frame: 0, blend: 0 }, new Float32Array(3 * this.track.count));
+    // Balls of a row stand apart, but can still be seen where vertices are very close.
+    const radius = Math.min(largestRadius, Math.max(0.3 * spacing(this.positions), 0.2 * largestRadius));
+    this.object = new InstancedMesh(new SphereGeometry(radius, 16, 10),
       new MeshStandardMaterial({ color: 0xe0a82e, roughness: 0.35, metalness: 0.2 }), this.track.count);
     this.object.frustumCulled = false;
     this.object.castShadow = true;
@@ -85,8 +101,8 @@ class Force {
       return [new Vector3(...middle)];
     }
     if (this.description.type === 'gravity') {
-      // Beside the bodies, at their height.
-      return [centre.clone().add(new Vector3(-half.x - 0.06 * diagonal, 0.5 * length, 0))];
+      // Beside the bodies at their height, where no wind comes from.
+      return [centre.clone().add(new Vector3(this.bounds.lee * (half.x + 0.06 * diagonal), 0.5 * length, 0))];
     }
     const across = Math.abs(along.y) > 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
     const reach = Math.abs(along.x) * half.x + Math.abs(along.y) * half.y + Math.abs(along.z) * half.z;
@@ -110,10 +126,12 @@ class Force {
       each.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), along);
       each.scale.set(0.16 * this.bounds.diagonal, length, 0.16 * this.bounds.diagonal);
     });
-    this.anchor = origins[origins.length >> 1].clone().addScaledVector(along, length);
+    this.ends = origins.flatMap((origin) => [origin, origin.clone().addScaledVector(along, length)]);
     const { name, type } = this.description;
+    this.anchor = origins[origins.length >> 1].clone().addScaledVector(along, type === 'wind' ? 0 : length);
     const many = this.track && this.track.count > 1 ? ' each' : '';
-    this.label.textContent = `${name} ${digits(size)}\u00a0${units[type] ?? ''}${many}`;
+    const called = name === `${type}${name.slice(type.length)}` && /^\d+$/.test(name.slice(type.length)) ? type : name;
+    this.label.textContent = `${called} ${digits(size)}\u00a0${units[type] ?? ''}${many}`;
   }
 }
 
@@ -130,10 +148,18 @@ export class Annotations {
       const most = Math.max(...force.keys.map((key) => magnitude(key.value)));
       largest[force.type] = Math.max(largest[force.type] ?? 0, most);
     }
-    this.forces = known.map((force) => new Force(run, force, { centre, half, diagonal }, largest[force.type], labels));
+    const lee = known.some((force) => force.type === 'wind' && force.keys[0].value[0] > 0) ? 1 : -1;
+    const place = { centre, half, diagonal, lee };
+    this.forces = known.map((force) => new Force(run, force, place, largest[force.type], labels));
     for (const each of [...this.pins, ...this.forces]) this.object.add(each.object);
     this.pinsWanted = true;
     this.forcesWanted = true;
+  }
+
+  /** Where the arrows of the first frame begin and end: x, y, z of each. */
+  reach() {
+    this.moveTo({ frame: 0, blend: 0 }, 0);
+    return this.forces.filter((force) => force.shown).flatMap((force) => force.ends.flatMap((end) => end.toArray()));
   }
 
   moveTo(place, time) {
@@ -141,14 +167,17 @@ export class Annotations {
     for (const force of this.forces) force.moveTo(place, time, this.forcesWanted);
   }
 
-  /** Puts the labels where their arrows end. */
+  /** Puts the labels beside their arrows. */
   placeLabels(stage) {
     const { clientWidth: width, clientHeight: height } = stage.canvas;
     for (const force of this.forces) {
       if (!force.shown) continue;
       const at = force.anchor.clone().applyMatrix4(stage.world.matrixWorld).project(stage.camera);
-      force.label.style.transform =
-        `translate(${((at.x + 1) / 2) * width}px, ${((1 - at.y) / 2) * height}px) translate(10px, -50%)`;
+      const x = ((at.x + 1) / 2) * width;
+      const long = force.label.offsetWidth;
+      const beside = at.x < 0 ? x - long - 12 : x + 12; // away from the bodies
+      const inside = Math.min(Math.max(beside, 4), width - long - 4);
+      force.label.style.transform = `translate(${inside}px, ${((1 - at.y) / 2) * height}px) translateY(-50%)`;
       force.label.style.visibility = at.z < 1 ? 'visible' : 'hidden';
     }
   }

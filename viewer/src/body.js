@@ -1,6 +1,6 @@
 // One body on the stage: its surfaces, of which one is shown, moved to where the run has them.
 import {
-  BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh, Vector2,
+  BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh, Vector2,
 } from 'three';
 import { clothMaterial, colourings } from './cloth_material.js';
 import { roundUp } from './numbers.js';
@@ -48,9 +48,9 @@ class Surface {
     };
   }
 
-  moveTo(place) {
+  moveTo(place, withStretch) {
     this.track.read(place, this.positions);
-    edgeStretch(this.positions, this.ends, this.restLengths, this.stretch);
+    if (withStretch) edgeStretch(this.positions, this.ends, this.restLengths, this.stretch);
     const { position, normal, stretch } = this.geometry.attributes;
     const { points } = this.shape;
     for (let v = 0; v < points.length; ++v) {
@@ -65,6 +65,8 @@ class Surface {
     this.edges.attributes.position.needsUpdate = true;
   }
 }
+
+const black = new Color(0);
 
 export class Body {
   constructor(run, description) {
@@ -103,11 +105,15 @@ export class Body {
   }
 
   setColouring(name, stretchMax) {
-    this.material.userData.uniforms.coloring.value = colourings.indexOf(name);
-    this.material.userData.uniforms.stretchMax.value = stretchMax;
+    this.colouring = name;
+    const { coloring, stretchMax: most } = this.material.userData.uniforms;
+    coloring.value = colourings.indexOf(name);
+    most.value = stretchMax;
+    // Colours that mean something are shown as they are.
+    this.material.sheenColor.copy(name === 'plain' ? this.material.userData.sheenColor : black);
   }
 
   moveTo(place) {
-    this.surface.moveTo(place);
+    this.surface.moveTo(place, this.colouring === 'stretch');
   }
 }

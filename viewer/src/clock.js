@@ -75,6 +75,11 @@ export class Clock {
     this.time = this.frames[Math.min(Math.max(index, 0), last)] / this.frameRate;
   }
 
+  stopAt(index) {
+    this.playing = false;
+    this.seekIndex(index);
+  }
+
   /** Pauses and goes `count` stored frames on, around the ends. */
   step(count) {
     this.pause();
@@ -85,6 +90,11 @@ export class Clock {
   changeSpeed(direction) {
     const at = speeds.indexOf(this.speed) + direction;
     this.speed = speeds[Math.min(Math.max(at, 0), speeds.length - 1)];
+  }
+
+  /** The next speed; after the fastest the slowest. */
+  cycleSpeed() {
+    this.speed = speeds[(speeds.indexOf(this.speed) + 1) % speeds.length];
   }
 
   /** Lets `seconds` of the viewer's life go by. */

@@ -2,7 +2,7 @@
 import { Color, DataTexture, DoubleSide, LinearFilter, MeshPhysicalMaterial, SRGBColorSpace } from 'three';
 import { mapColour } from './colours.js';
 
-export const colourings = ['own', 'stretch', 'checker', 'texture'];
+export const colourings = ['plain', 'stretch', 'checker', 'uv'];
 
 let map;
 function mapTexture() {
@@ -44,6 +44,7 @@ export function clothMaterial(body, checks) {
     patternSize: { value: checks.extent },
   };
   material.userData.uniforms = uniforms;
+  material.userData.sheenColor = material.sheenColor.clone();
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = shader.vertexShader

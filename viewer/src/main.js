@@ -2,6 +2,7 @@
 import { Annotations } from './annotations.js';
 import { Body } from './body.js';
 import { Clock, speeds } from './clock.js';
+import { colourings } from './cloth_material.js';
 import { css, mapColour } from './colours.js';
 import { makePlots } from './curves.js';
 import { makeControls } from './controls.js';
@@ -10,6 +11,24 @@ import { openRun } from './run_data.js';
 import { Stage, presets } from './stage.js';
 
 const element = (id) => document.getElementById(id);
+
+/** Up to `most` of the points where skins are over the run, evenly chosen: x, y, z. */
+function placesOf(run, most) {
+  const tracks = run.head.bodies.map((body) => run.tracks[body.surfaces.skin.track]);
+  const frames = run.head.frames.length;
+  const points = tracks.reduce((sum, track) => sum + track.count, 0);
+  const frameStride = Math.ceil(frames / 60);
+  const pointStride = Math.ceil((points * Math.ceil(frames / frameStride)) / most);
+  const places = [];
+  for (const track of tracks) {
+    const positions = new Float32Array(3 * track.count);
+    for (let frame = 0; frame < frames; frame += frameStride) {
+      track.read({ frame, blend: 0 }, positions);
+      for (let p = 0; p < track.count; p += pointStride) places.push(...positions.subarray(3 * p, 3 * p + 3));
+    }
+  }
+  return places;
+}
 
 /** The box of everything that is drawn, over the whole run. */
 function boundsOf(run) {
@@ -44,13 +63,14 @@ class Viewer {
     const { head } = run;
     this.clock = new Clock(head.frames, head.frame_rate);
     const bounds = boundsOf(run);
-    this.stage = new Stage(element('view'), bounds);
+    this.stage = new Stage(element('view'), placesOf(run, 30000));
     this.bodies = head.bodies.map((body) => new Body(run, body));
     this.annotations = new Annotations(run, bounds, element('labels'));
+    this.stage.beside = this.annotations.reach();
     for (const each of [...this.bodies, this.annotations]) this.stage.world.add(each.object);
     this.kinds = ['skin', 'contour', 'lattice'].filter((kind) => head.bodies.some((body) => body.surfaces[kind]));
     this.surface = 'skin';
-    this.colouring = 'own';
+    this.colouring = 'plain';
     this.plots = makePlots(element('curves'), run, (time) => this.seek(() => this.clock.seekTime(time)));
     this.stage.setUp(upAxis(run));
     this.setTheme(wishes().get('theme') ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
@@ -83,17 +103,18 @@ class Viewer {
   }
 
   setColouring(name) {
+    if (!colourings.includes(name)) return;
     this.colouring = name;
     this.applyLook();
   }
 
   /** Upper end of the stretch colours [%]. */
   get stretchMax() {
-    for (const body of this.bodies) body.showSurface(this.surface);
     return roundUp(Math.max(...this.bodies.map((body) => body.surface.largestStretch), 0.1));
   }
 
   applyLook() {
+    for (const body of this.bodies) body.showSurface(this.surface);
     const most = this.stretchMax;
     for (const body of this.bodies) body.setColouring(this.colouring, most);
     const scale = element('scale');
@@ -109,6 +130,8 @@ class Viewer {
   draw() {
     this.stage.resize();
     const { clock } = this;
+    if (clock.playing !== this.wasPlaying || this.stale) this.onState?.();
+    this.wasPlaying = clock.playing;
     const { place } = clock;
     const key = `${place.frame} ${place.blend}`;
     if (this.stale || key !== this.shown) {
@@ -162,14 +185,15 @@ function grantWishes(viewer) {
 }
 
 async function begin() {
+  const trouble = element('trouble'); // says "Opening" until then
   try {
     const viewer = new Viewer(await openRun(document));
     grantWishes(viewer);
     makeControls(viewer);
+    trouble.hidden = true;
     viewer.start();
     window.muslin = viewer; // for scripts and tests
   } catch (error) {
-    const trouble = element('trouble');
     trouble.hidden = false;
     trouble.textContent = /webgl/i.test(error.message)
       ? 'This browser cannot draw in three dimensions (WebGL is off).' : error.message;

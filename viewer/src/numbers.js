@@ -11,7 +11,6 @@ export function roundUp(value) {
 export function ticks(low, high, count) {
   const step = roundUp((high - low) / Math.max(count, 1));
   const result = [];
-  if (!(step > 0) || !Number.isFinite(step)) return result;
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) result.push(i * step || 0);
   return result;
 }
@@ -21,14 +20,16 @@ export function digits(value) {
   if (!Number.isFinite(value)) return '–';
   if (value === 0) return '0';
   const text = Number(value.toPrecision(3));
-  return Math.abs(text) >= 1e6 || Math.abs(text) < 1e-4 ? text.toExponential() : String(text);
+  const far = Math.abs(text) >= 1e6 || Math.abs(text) < 1e-4;
+  return (far ? text.toExponential() : String(text)).replace(/-/g, '\u2212');
 }
 
 /** With an SI prefix: 12300 J → "12.3 kJ". */
 export function withUnit(value, unit) {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  for (const [factor, prefix] of [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ']]) {
+  for (const [factor, prefix] of [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, '\u00b5'],
+    [1e-9, 'n'], [1e-12, 'p']]) {
     if (size >= factor) return `${digits(value / factor)}\u00a0${prefix}${unit}`;
   }
   return `0\u00a0${unit}`;

@@ -85,8 +85,10 @@ export async function openRun(page) {
 
 /** @returns {{head, tracks: Track[], floats, indices}} */
 export function runFrom(head, bytes) {
-  const floats = (array) => new Float32Array(bytes.buffer, bytes.byteOffset + array.at, array.count);
-  const indices = (array) => new Uint32Array(bytes.buffer, bytes.byteOffset + array.at, array.count);
+  // Copies, so that what held the frames can go.
+  const arrays = bytes.slice(0, head.frames_at).buffer;
+  const floats = (array) => new Float32Array(arrays, array.at, array.count);
+  const indices = (array) => new Uint32Array(arrays, array.at, array.count);
   const tracks = head.tracks.map((track) => new Track(track, head.frames.length));
   let at = head.frames_at;
   for (let frame = 0; frame < head.frames.length; ++frame) {

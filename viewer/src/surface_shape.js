@@ -11,11 +11,16 @@
 export function smoothNormals(positions, shape, sums, out) {
   const { triangles, points, normals } = shape;
   sums.fill(0);
+  const add = (corner, weight, nx, ny, nz) => {
+    const n = 3 * normals[corner];
+    sums[n] += weight * nx;
+    sums[n + 1] += weight * ny;
+    sums[n + 2] += weight * nz;
+  };
   for (let t = 0; t < triangles.length; t += 3) {
-    const corners = [triangles[t], triangles[t + 1], triangles[t + 2]];
-    const a = 3 * points[corners[0]];
-    const b = 3 * points[corners[1]];
-    const c = 3 * points[corners[2]];
+    const a = 3 * points[triangles[t]];
+    const b = 3 * points[triangles[t + 1]];
+    const c = 3 * points[triangles[t + 2]];
     const abx = positions[b] - positions[a], aby = positions[b + 1] - positions[a + 1],
       abz = positions[b + 2] - positions[a + 2];
     const acx = positions[c] - positions[a], acy = positions[c + 1] - positions[a + 1],
@@ -26,14 +31,9 @@ export function smoothNormals(positions, shape, sums, out) {
     if (!(area > 0)) continue;
     const angleA = Math.atan2(area, abx * acx + aby * acy + abz * acz);
     const angleB = Math.atan2(area, -(abx * bcx + aby * bcy + abz * bcz));
-    const weights = [angleA, angleB, Math.PI - angleA - angleB];
-    for (let k = 0; k < 3; ++k) {
-      const n = 3 * normals[corners[k]];
-      const w = weights[k] / area;
-      sums[n] += w * nx;
-      sums[n + 1] += w * ny;
-      sums[n + 2] += w * nz;
-    }
+    add(triangles[t], angleA / area, nx, ny, nz);
+    add(triangles[t + 1], angleB / area, nx, ny, nz);
+    add(triangles[t + 2], (Math.PI - angleA - angleB) / area, nx, ny, nz);
   }
   for (let v = 0; v < points.length; ++v) {
     const n = 3 * normals[v];
