@@ -12,7 +12,7 @@ namespace {
 
 RunReader::LatticeShape shape_of(const Lattice& lattice) {
   RunReader::LatticeShape shape;
-  shape.rest_positions = rest_positions(lattice);
+  shape.rest_positions = test::rest_positions(lattice);
   shape.voxels = lattice.voxel_vertices;
   return shape;
 }

@@ -95,6 +95,14 @@ struct Page {
   std::vector<std::string> notes;
 };
 
+/// How many packed bytes the page has room for beside its own text and the description of the run.
+std::uint64_t room_for(const PageContent& content, int frames, std::uint64_t largest_page) {
+  constexpr std::uint64_t notes = 1000, digits_of_a_frame = 11;
+  const std::uint64_t text = page_template().size() + escaped_for_script(content.head).size() + notes +
+                             digits_of_a_frame * static_cast<std::uint64_t>(frames);
+  return largest_page > text ? (largest_page - text) / 4 * 3 : 0;  // base64
+}
+
 /// As much of the run as fits.
 Page fitting_page(const RunReader& run, std::uint64_t largest, const std::string& limit,
                   const Progress& progress) {
@@ -102,7 +110,7 @@ Page fitting_page(const RunReader& run, std::uint64_t largest, const std::string
   Page page;
   const auto try_frames = [&](int stride) {
     page.frames = chosen_frames(count, stride);
-    Packed packed = pack(run, page.content, page.frames, largest, progress);
+    Packed packed = pack(run, page.content, page.frames, room_for(page.content, count, largest), progress);
     if (packed.data) page.data = std::move(*packed.data);
     return packed;
   };
@@ -125,11 +133,7 @@ Page fitting_page(const RunReader& run, std::uint64_t largest, const std::string
     packed = try_frames(stride);
   }
   if (stride > 1)
-    page.notes.push_back(fmt::format("Every {} frame is shown, to keep the page below {}.",
-                                     stride == 2   ? "second"
-                                     : stride == 3 ? "third"
-                                                   : fmt::format("{}th", stride),
-                                     limit));
+    page.notes.push_back(fmt::format("One frame in {} is shown, to keep the page below {}.", stride, limit));
   return page;
 }
 
@@ -144,9 +148,7 @@ ViewReport write_view(const RunReader& run, const std::filesystem::path& file, c
   WholeFile out(file);
   const std::string_view page = page_template();
   const std::string limit = fmt::format("{:g} MB", static_cast<double>(options.largest_bytes) / 1e6);
-  const std::uint64_t fixed = page.size() + 20'000;  // with room for the description
-  const std::uint64_t room = options.largest_bytes > fixed ? (options.largest_bytes - fixed) / 4 * 3 : 0;
-  Page fitting = fitting_page(run, room, limit, progress);
+  Page fitting = fitting_page(run, options.largest_bytes, limit, progress);
   fitting.content.head["frames"] = fitting.frames;
   fitting.content.head["frames_at"] = fitting.content.arrays.size();
   fitting.content.head["notes"] = fitting.notes;
