@@ -3,6 +3,7 @@
 
 #include "command.hpp"
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "muslin/muslin.hpp"
 
@@ -55,13 +56,59 @@ std::string page(const Material& m) {
   return text + "\nsource: " + m.source + "\n";
 }
 
+using Json = nlohmann::ordered_json;
+
+Json numbers(const Material& m) {
+  Json json = {{"name", m.name}, {"description", m.description}, {"source", m.source}};
+  if (m.has_lattice) {
+    json["lattice"] = {{"density", m.density},
+                       {"edge_modulus", m.edge_modulus},
+                       {"face_diagonal_modulus", m.face_diagonal_modulus},
+                       {"body_diagonal_modulus", m.body_diagonal_modulus},
+                       {"volume_modulus", m.volume_modulus},
+                       {"mass_damping", m.mass_damping},
+                       {"stiffness_damping", m.stiffness_damping}};
+  }
+  if (m.shell) {
+    json["shell"] = {{"areal_density", m.shell->areal_density},
+                     {"membrane_warp", m.shell->membrane_warp},
+                     {"membrane_weft", m.shell->membrane_weft},
+                     {"membrane_shear", m.shell->membrane_shear},
+                     {"poisson", m.shell->poisson},
+                     {"bending_warp", m.shell->bending_warp},
+                     {"bending_weft", m.shell->bending_weft},
+                     {"bending_bias", m.shell->bending_bias},
+                     {"mass_damping", m.shell->mass_damping},
+                     {"stiffness_damping", m.shell->stiffness_damping},
+                     {"bending_damping", m.shell->bending_damping}};
+  }
+  json["reference"] = Json::object();
+  for (const auto& [what, value] : m.reference) json["reference"][what] = value;
+  return json;
+}
+
+std::string json_of(const std::string& name) {
+  if (!name.empty()) return numbers(find_material(name)).dump(2) + "\n";
+  Json all = Json::array();
+  for (const std::string& each : material_names()) all.push_back(numbers(find_material(each)));
+  return all.dump(2) + "\n";
+}
+
 }  // namespace
 
 void add_materials(CLI::App& program) {
   auto* command = program.add_subcommand("materials", "list the materials, or show one with its sources");
   auto name = std::make_shared<std::string>();
   command->add_option("NAME", *name, "material");
-  command->callback([name] { print(name->empty() ? table() : page(find_material(*name))); });
+  auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "for programs: a list of all, or the one");
+  command->callback([name, json] {
+    if (*json) {
+      print(json_of(*name));
+    } else {
+      print(name->empty() ? table() : page(find_material(*name)));
+    }
+  });
 }
 
 }  // namespace muslin::app

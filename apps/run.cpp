@@ -18,6 +18,8 @@ struct RunArguments {
   int frames = -1;
   int threads = 0;
   bool resume = false;
+  int resume_from = -1;
+  bool keep_states = false;
   bool quiet = false;
   std::vector<std::string> set;
 };
@@ -31,7 +33,9 @@ void run(const RunArguments& arguments) {
                           : std::filesystem::path(arguments.directory);
   options.overrides = arguments.set;
   options.frames = arguments.frames;
-  options.resume = arguments.resume;
+  options.resume = arguments.resume || arguments.resume_from >= 0;
+  options.resume_from = arguments.resume_from;
+  options.keep_states = arguments.keep_states;
   options.cancelled = [] { return interrupted(); };
   RunResult result;
   {
@@ -75,6 +79,12 @@ void add_run(CLI::App& program) {
       ->add_option("--threads", arguments->threads, "threads (default: one per core); the result is the same")
       ->check(non_negative_integer());
   command->add_flag("--resume", arguments->resume, "go on from the last checkpoint");
+  command
+      ->add_option("--resume-from", arguments->resume_from,
+                   "go back to this frame and on from there, with the scene as it now is")
+      ->check(non_negative_integer());
+  command->add_flag("--keep-states", arguments->keep_states,
+                    "keep the state of every frame, so that --resume-from can take any");
   command->add_option("--set", arguments->set, "KEY=VALUE overrides a setting, e.g. time.duration=2")
       ->allow_extra_args(false);
   command->add_flag("--quiet", arguments->quiet, "no progress, only errors and warnings");

@@ -91,5 +91,44 @@ TEST(Run, ResumesWithOtherForcesButNotWithOtherBodies) {
   EXPECT_EQ(RunReader(scratch / "run").frame_count(), 4);
 }
 
+TEST(Run, GoesBackToAnyFrameWhoseStateWasKept) {
+  Scratch scratch;
+  run_scene(scene, options(scratch / "straight", 6));
+  RunOptions kept = options(scratch / "run", 6);
+  kept.keep_states = true;
+  run_scene(scene, kept);
+  kept.resume = true;
+  kept.resume_from = 2;
+  EXPECT_EQ(run_scene(scene, kept).first_frame, 2);
+  for (const char* name : {"flag.skin.pc2", "flag.contour.pc2", "flag.lattice.pc2", "probes.csv"})
+    EXPECT_EQ(bytes_of(scratch / "run" / name), bytes_of(scratch / "straight" / name)) << name;
+
+  // With another gravity the frames up to there stay, those behind it differ, and none of the old is left.
+  kept.frames = 4;
+  kept.resume_from = 3;
+  kept.overrides = {"force.0.acceleration=[0, 9.8, 0]"};
+  const RunResult changed = run_scene(scene, kept);
+  EXPECT_EQ(changed.first_frame, 3);
+  EXPECT_EQ(changed.last_frame, 4);
+  const RunReader before(scratch / "straight"), after(scratch / "run");
+  ASSERT_EQ(after.frame_count(), 5);
+  EXPECT_EQ(after.diagnostics()[3].kinetic, before.diagnostics()[3].kinetic);
+  EXPECT_NE(after.diagnostics()[4].kinetic, before.diagnostics()[4].kinetic);
+  kept.resume_from = 5;
+  EXPECT_THROW(
+      {
+        try {
+          run_scene(scene, kept);
+        } catch (const Error& error) {
+          EXPECT_EQ(error.kind(), ErrorKind::input);
+          EXPECT_THAT(error.what(), testing::HasSubstr("4, 3, 2, 1, 0"));
+          throw;
+        }
+      },
+      Error);
+  kept.directory = scratch / "nothing";
+  EXPECT_THROW(run_scene(scene, kept), Error);
+}
+
 }  // namespace
 }  // namespace muslin

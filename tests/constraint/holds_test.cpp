@@ -111,5 +111,31 @@ TEST(Holds, CopyContinuesWithTheSameBits) {
   EXPECT_EQ(a.x, b.x);
 }
 
+TEST(Holds, FollowsItsPointsAndKeepsTheDistanceItHadFromThem) {
+  PointSequence sequence{2, {0, 1, 2}, {}};
+  for (float t : {0.f, 1.f, 2.f}) {
+    sequence.positions.emplace_back(0, t * t, 0);
+    sequence.positions.emplace_back(5, 0, -t);
+  }
+  Pin pin{"hand", {0, 1}, 0, 10, {}};
+  pin.sequence = std::make_shared<const PointSequence>(sequence);
+  pin.points = {1, 0};
+  Pin late = pin;
+  late.vertices = {2};
+  late.points = {1};
+  late.from = 1;
+  Stepper s{{pin, late}, {Vec3(5, 0, 0.5), Vec3(0, 0, 0), Vec3(7, 0, 0)}, {}};
+  s.step(0, 0.5);
+  EXPECT_EQ(s.x[0], Vec3(5, 0, 0));
+  EXPECT_EQ(s.x[1], Vec3(0, 0.5, 0));
+  EXPECT_EQ(s.x[2], Vec3(7, -0.5, 0));
+  s.step(0.5, 1);  // the late one takes hold where it was at 0.5, when its point was at z = −0.5
+  EXPECT_EQ(s.x[2], Vec3(7, -0.5, -0.5));
+  s.step(1, 1.5);
+  EXPECT_EQ(s.x[0], Vec3(5, 0, -1));
+  EXPECT_EQ(s.x[1], Vec3(0, 2.5, 0));
+  EXPECT_EQ(s.x[2], Vec3(7, -0.5, -1));
+}
+
 }  // namespace
 }  // namespace muslin

@@ -14,20 +14,28 @@ namespace muslin {
 enum class RunStatus { running, finished, interrupted, failed };
 const char* name_of(RunStatus status);
 
+/// Where a run begins, and how far back it can be taken up again.
+struct RunStart {
+  bool resume = false;       ///< go on from a checkpoint, if there is one
+  int resume_from = -1;      ///< that of this frame; −1: the newest. What lies behind it is cut off.
+  bool keep_states = false;  ///< keep the checkpoint of every frame
+};
+
 /// Writes a run. One process at a time; a lock in `checkpoint/` sees to it.
 ///
 /// A frame goes to the disk in this order: points, rows, checkpoint. Whatever moment the process is killed,
 /// the newest checkpoint therefore has all its frames, and what lies behind it is cut off on resume.
 /// A checkpoint is written after every frame; states beyond 64 MiB at least every 10 s instead. The content
-/// is forced to the disk every 5 s and at the end. The last two checkpoints are kept.
+/// is forced to the disk every 5 s and at the end. The last two checkpoints are kept; with `keep_states` one
+/// of every frame, whatever its size.
 class RunWriter {
  public:
-  /// Begins a run at the simulation's frame 0, or with `resume` restores the simulation from the newest
-  /// checkpoint and goes on behind it; without one it begins.
+  /// Begins a run at the simulation's frame 0, or with `start.resume` restores the simulation from the newest
+  /// checkpoint, or that of `start.resume_from`, and goes on behind it; without any it begins.
   /// An earlier run in `directory` is replaced, only muslin's own files. Errors: file, if the directory
   /// cannot be made or written, holds something else than a run, or is being written by another process;
-  /// input, if the run to resume has other bodies, naming what changed.
-  RunWriter(std::filesystem::path directory, Simulation& simulation, int total_frames, bool resume);
+  /// input, if the run to resume has other bodies, naming what changed, or no state of `start.resume_from`.
+  RunWriter(std::filesystem::path directory, Simulation& simulation, int total_frames, RunStart start);
   /// Leaves the status `running`, as a killed process does, unless finish() was called.
   ~RunWriter();
 

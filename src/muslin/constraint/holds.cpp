@@ -29,8 +29,10 @@ void Holds::step(std::span<const Pin> pins, double time_begin, double time_end, 
       continue;
     }
     if (!holding[p]) {
-      for (std::size_t i = 0; i < anchor.size(); ++i)
+      for (std::size_t i = 0; i < anchor.size(); ++i) {
         anchor[i] = positions[static_cast<std::size_t>(pin.vertices[i])];
+        if (pin.sequence) anchor[i] -= pin.sequence->at(time_begin, static_cast<std::size_t>(pin.points[i]));
+      }
       holding[p] = 1;
     }
     const bool moves = !pin.motion.keys.empty();
@@ -40,7 +42,11 @@ void Holds::step(std::span<const Pin> pins, double time_begin, double time_end, 
     for (std::size_t i = 0; i < anchor.size(); ++i) {
       const auto v = static_cast<std::size_t>(pin.vertices[i]);
       fixed[v] = 1;
-      targets[v] = moves ? Vec3(motion * anchor[i]) : anchor[i];
+      if (pin.sequence) {
+        targets[v] = anchor[i] + pin.sequence->at(time_end, static_cast<std::size_t>(pin.points[i]));
+      } else {
+        targets[v] = moves ? Vec3(motion * anchor[i]) : anchor[i];
+      }
     }
   }
 }

@@ -14,8 +14,9 @@ namespace muslin {
 /// is tried again from a copy made before it. Starts empty.
 struct Holds {
   std::vector<std::uint8_t> holding;  ///< #pins, 1 while the pin holds; empty before the first step
-  std::vector<Vec3> anchors;          ///< where the vertices were when their pin took hold, all pins one
-                                      ///< after the other [m]; meaningful where the pin is holding
+  std::vector<Vec3> anchors;          ///< where the vertices were when their pin took hold, seen from their
+                                      ///< points if it has a sequence; all pins one after the other [m];
+                                      ///< meaningful where the pin is holding
 
   /// Decides the step from `time_begin`, when the vertices are at `positions`, to `time_end`.
   /// fixed[v] = 1 where v is held at the end of the step, and targets[v] is then its place; elsewhere

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
+#include "muslin/geometry/point_sequence.hpp"
 
 namespace muslin {
 
@@ -25,13 +27,16 @@ struct Motion {
 };
 
 /// Holds `vertices` from `from` until `until`: vertex v stands at motion(t)·motion(from)⁻¹ applied to where
-/// it was when the pin took hold.
+/// it was when the pin took hold. With a sequence it keeps instead the distance that it then had from the
+/// point of the sequence it follows.
 struct Pin {
   std::string name;
   std::vector<int> vertices;                               ///< global vertex indices, ascending
   double from = 0;                                         ///< [s]
   double until = std::numeric_limits<double>::infinity();  ///< [s]
   Motion motion;
+  std::shared_ptr<const PointSequence> sequence;  ///< null: `motion` decides
+  std::vector<int> points;                        ///< #vertices: the point of the sequence each follows
 
   bool active(double time) const { return time >= from && time < until; }
 };

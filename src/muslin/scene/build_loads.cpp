@@ -9,6 +9,7 @@
 #include "muslin/force/point_force.hpp"
 #include "muslin/force/wind.hpp"
 #include "muslin/geometry/closest_point.hpp"
+#include "muslin/scene/pin_sequence.hpp"
 #include "muslin/scene/select.hpp"
 
 namespace muslin {
@@ -136,6 +137,7 @@ void build_pins(Model& model) {
     pin.until = settings.until;
     pin.motion = settings.motion;
     pin.motion.pivot = settings.pivot.value_or(centre_of(model, pin.vertices));
+    if (!settings.sequence.empty()) follow_sequence(model.scene, settings, body, pin);
     model.pins.push_back(std::move(pin));
   }
 }

@@ -150,6 +150,15 @@ PinSettings read_pin(const TomlValue& value, std::size_t index, const Scene& sce
   pin.where = read_selection(table);
   read_times(table, pin.from, pin.until);
   if (table.has("pivot")) pin.pivot = table.vector("pivot", "m");
+  if (table.has("sequence")) {
+    pin.sequence = table.string("sequence");
+    pin.sequence_place = table.place("sequence");
+    for (const char* other : {"keyframes", "pivot"}) {
+      if (table.has(other))
+        throw table.error(other, fmt::format("`{}` and `sequence` both say how the pin moves", other),
+                          "keep one of them");
+    }
+  }
   read_keyframes(table, known_keys("pin.keyframes"), [&](const TomlTable& key, double time) {
     pin.motion.keys.push_back({time, key.vector("translate", "m", Vec3::Zero()),
                                rotation_from_degrees(key.vector("rotate", "degrees", Vec3::Zero()))});

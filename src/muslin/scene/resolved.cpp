@@ -100,6 +100,7 @@ Json pin(const PinSettings& p) {
   json["from"] = number(p.from);
   json["until"] = number(p.until);
   if (p.pivot) json["pivot"] = vector(*p.pivot);
+  if (!p.sequence.empty()) json["sequence"] = p.sequence;
   json["keyframes"] = Json::array();
   for (const Motion::Key& key : p.motion.keys) {
     json["keyframes"].push_back(

@@ -97,6 +97,8 @@ struct PinSettings {
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Motion motion;
   std::optional<Vec3> pivot;  ///< of the motion [m]; default: the centre of the held vertices at rest
+  std::string sequence;       ///< in place of the motion: path of a file of moving points; empty: none
+  Place sequence_place;
   Place place;
 };
 

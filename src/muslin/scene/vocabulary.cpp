@@ -34,7 +34,7 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
       {"where.sphere", {"center", "radius"}},
       {"where.plane", {"point", "normal", "distance"}},
       {"where.line", {"from", "to", "distance"}},
-      {"pin", {"name", "body", "where", "from", "until", "keyframes", "pivot"}},
+      {"pin", {"name", "body", "where", "from", "until", "keyframes", "pivot", "sequence"}},
       {"pin.keyframes", {"time", "translate", "rotate"}},
       {"force.gravity", {"type", "name", "body", "acceleration", "keyframes", "from", "until"}},
       {"force.point", {"type", "name", "body", "where", "force", "keyframes", "from", "until"}},

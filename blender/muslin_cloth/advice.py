@@ -1,0 +1,99 @@
+"""What an artist should know about a mesh before baking, in Blender's words. No Blender needed."""
+
+from dataclasses import dataclass
+
+ERROR, WARNING, INFO = "ERROR", "WARNING", "INFO"
+
+
+@dataclass(frozen=True)
+class Notice:
+    level: str
+    text: str
+    object: str = ""
+
+
+def counted(n, one, many=None):
+    return f"{n:,} {one if n == 1 else many or one + 's'}".replace(",", " ")
+
+
+def of_report(report, model, name):
+    """Notices about a mesh from what `muslin check MESH --json` says of it."""
+    notices = []
+
+    def say(level, text):
+        notices.append(Notice(level, text, name))
+
+    shell = model == "shell"
+    bad = ERROR if shell else WARNING
+    if report["faces"] == 0:
+        say(ERROR, "The mesh has no faces: fill it, or choose another object")
+        return notices
+    if report["non_manifold_edges"]:
+        n = counted(report["non_manifold_edges"], "edge is", "edges are")
+        say(bad, f"{n} shared by three or more faces: Select > All by Trait > Non Manifold, and separate them")
+    if report["degenerate_faces"]:
+        n = counted(report["degenerate_faces"], "face has", "faces have")
+        say(bad, f"{n} no area: Mesh > Clean Up > Degenerate Dissolve")
+    if report["duplicate_faces"]:
+        n = counted(report["duplicate_faces"], "face is", "faces are")
+        say(bad, f"{n} there twice: Mesh > Merge > By Distance")
+    if report["unused_vertices"]:
+        n = counted(report["unused_vertices"], "vertex belongs", "vertices belong")
+        say(bad, f"{n} to no face: Mesh > Clean Up > Delete Loose")
+    if report["flipped_edges"]:
+        n = counted(report["flipped_edges"], "edge", "edges")
+        say(WARNING, f"Faces disagree about their front side along {n}: Mesh > Normals > Recalculate Outside")
+    if not shell and not report["closed"]:
+        say(INFO, f"The mesh is open along {counted(report['open_edges'], 'edge')}: it is baked with its thickness")
+    if shell and report["closed"]:
+        say(INFO, "The mesh is closed: as a shell it is a hollow skin; choose Solid to fill it")
+    size = max(b - a for a, b in zip(report["min"], report["max"]))
+    if size > 200 or size < 1e-3:
+        say(WARNING, f"It is {size:.4g} m across: check the scale of the object and Unit Scale of the scene")
+    return notices
+
+
+def of_polygons(sizes, name):
+    """n-gons are allowed, but how they are cut decides how they fold."""
+    large = sum(1 for n in sizes if n > 4)
+    if not large:
+        return []
+    return [Notice(INFO, f"{counted(large, 'n-gon is', 'n-gons are')} cut into triangles: Face > Triangulate shows how",
+                   name)]
+
+
+def problem_line(stderr):
+    """The error that muslin printed, without its own name: the last line that begins `muslin: `."""
+    lines = [line for line in stderr.splitlines() if line.startswith("muslin: ")]
+    errors = [line for line in lines if not line.startswith(("muslin: warning: ", "muslin: resumed with "))]
+    return errors[-1][len("muslin: "):] if errors else ""
+
+
+def split_problem(text):
+    """(what is wrong, what to do) of an error `…; remedy`."""
+    what, mark, remedy = text.rpartition("; ")
+    return (what, remedy) if mark else (text, "")
+
+
+def estimate_voxels(area, volume, closed, thickness, width):
+    """About how many voxels a lattice has: what is inside, and half a voxel all over the surface."""
+    if width <= 0:
+        return 0
+    if closed and volume > 0:
+        return round(volume / width**3 + 0.75 * area / width**2)
+    layers = max(1.0, (thickness or width) / width) + 0.5
+    return round(area / width**2 * layers)
+
+
+def suggest_width(area, volume, closed, thickness, target=8000):
+    """The voxel width that gives about `target` voxels, to two digits."""
+    if area <= 0:
+        return 0.0
+    low, high = 1e-9 * area**0.5, 10 * area**0.5
+    for _ in range(200):
+        middle = (low * high) ** 0.5
+        if estimate_voxels(area, volume, closed, thickness, middle) > target:
+            low = middle
+        else:
+            high = middle
+    return float(f"{high:.2g}")

@@ -1,0 +1,417 @@
+"""From Blender's scene to the files muslin reads."""
+
+import contextlib
+import os
+import pathlib
+
+import bpy
+import numpy as np
+
+from . import axes, point_cache
+from .advice import ERROR, INFO, WARNING, Notice, counted
+from .playback import modifier_of
+from .scene_text import Cloth, Collider, SceneInput, Wind, body_names, obj_text, scene_toml
+
+PIN_WEIGHT = 0.5
+
+
+class Problem(Exception):
+    """What keeps a scene from being baked; the text names the object and the remedy."""
+
+
+def cloth_objects(scene):
+    return [o for o in scene.objects if o.type == "MESH" and o.muslin.role == "CLOTH"]
+
+
+def collider_objects(scene):
+    return [o for o in scene.objects if o.type == "MESH" and o.muslin.role == "COLLIDER"]
+
+
+def field_objects(scene):
+    return [o for o in scene.objects if o.field and o.field.type != "NONE" and o.visible_get()]
+
+
+def frame_rate(scene):
+    return scene.render.fps / scene.render.fps_base
+
+
+def unit_scale(scene):
+    return scene.unit_settings.scale_length
+
+
+def depsgraph_of(scene):
+    context = bpy.context
+    if context.scene == scene:
+        return context.evaluated_depsgraph_get()
+    return scene.view_layers[0].depsgraph
+
+
+@contextlib.contextmanager
+def below_the_cloth(objects):
+    """The Muslin modifier and all that comes after it are off: what is evaluated is what the cloth is made of
+    and what its pins follow."""
+    switched = []
+    for obj in objects:
+        cache, after = modifier_of(obj), False
+        for modifier in obj.modifiers:
+            after = after or modifier == cache
+            if after and modifier.show_viewport:
+                switched.append((obj.name, modifier.name))
+                modifier.show_viewport = False
+    try:
+        yield
+    finally:
+        for name, modifier in switched:
+            obj = bpy.data.objects.get(name)
+            if obj and modifier in obj.modifiers:
+                obj.modifiers[modifier].show_viewport = True
+
+
+class Snapshot:
+    """A mesh as evaluated: arrays, in the object's own space."""
+
+    def __init__(self, obj, depsgraph, topology=False, group=None):
+        evaluated = obj.evaluated_get(depsgraph)
+        self.matrix = np.array(evaluated.matrix_world)
+        keep = {"preserve_all_data_layers": True, "depsgraph": depsgraph} if topology else {}
+        mesh = evaluated.to_mesh(**keep)
+        try:
+            count = len(mesh.vertices)
+            points = np.empty(3 * count, np.float32)
+            mesh.vertices.foreach_get("co", points)
+            self.points = points.reshape(-1, 3).astype(float)
+            if topology:
+                self._read_topology(mesh, group)
+        finally:
+            evaluated.to_mesh_clear()
+
+    def _read_topology(self, mesh, group):
+        self.corners = np.empty(len(mesh.loops), np.int32)
+        mesh.loops.foreach_get("vertex_index", self.corners)
+        self.sizes = np.empty(len(mesh.polygons), np.int32)
+        mesh.polygons.foreach_get("loop_total", self.sizes)
+        self.uvs = None
+        if mesh.uv_layers.active and len(mesh.loops):
+            uvs = np.empty(2 * len(mesh.loops), np.float32)
+            mesh.uv_layers.active.data.foreach_get("uv", uvs)
+            self.uvs = uvs.reshape(-1, 2)
+        self.pinned = []
+        if group is not None:
+            self.pinned = [v.index for v in mesh.vertices
+                           if any(g.group == group and g.weight >= PIN_WEIGHT for g in v.groups)]
+
+    def world(self, scale):
+        return axes.to_muslin(self.points, self.matrix, scale)
+
+    def obj(self, scale, points=None):
+        flip = np.linalg.det(self.matrix[:3, :3]) < 0
+        return obj_text(self.world(scale) if points is None else points, self.corners, self.sizes, self.uvs,
+                        self.pinned, flip)
+
+
+def pin_group_index(obj):
+    name = obj.muslin.pin_group
+    if not name:
+        return None
+    group = obj.vertex_groups.get(name)
+    if group is None:
+        raise Problem(f"{obj.name}: there is no vertex group \"{name}\" to pin: choose one under Pins")
+    return group.index
+
+
+def require_ready(scene):
+    """What can be said before anything is evaluated. Problem otherwise."""
+    if not bpy.data.filepath:
+        raise Problem("Save the file first: the bake lies in a folder beside it")
+    if not cloth_objects(scene):
+        raise Problem("No object of this scene is muslin cloth: select a mesh and choose Muslin Cloth under Physics")
+    for obj in cloth_objects(scene) + collider_objects(scene):
+        if obj.mode == "EDIT":
+            raise Problem(f"{obj.name} is in Edit Mode: leave it with Tab, so that the mesh is up to date")
+        if not obj.visible_get():
+            raise Problem(f"{obj.name} is hidden, so Blender does not animate it: show it, or remove its muslin role")
+    for obj in cloth_objects(scene):
+        pin_group_index(obj)
+
+
+def snapshot(obj, depsgraph, topology=False):
+    group = pin_group_index(obj) if topology and obj.muslin.role == "CLOTH" else None
+    taken = Snapshot(obj, depsgraph, topology, group)
+    if not np.isfinite(taken.matrix).all() or not np.isfinite(taken.points).all():
+        raise Problem(f"{obj.name} has a coordinate that is no number: look at its transform, modifiers and drivers")
+    if abs(np.linalg.det(taken.matrix[:3, :3])) < 1e-12 * max(np.abs(taken.matrix[:3, :3]).max(), 1e-30) ** 3:
+        raise Problem(f"{obj.name} is scaled to nothing along an axis: give it a scale that is not 0")
+    return taken
+
+
+def notices_of(obj, taken):
+    """What Blender alone knows."""
+    notices = []
+
+    def say(level, text):
+        notices.append(Notice(level, text, obj.name))
+
+    if obj.muslin.pin_group and not taken.pinned:
+        say(ERROR, f"No vertex of \"{obj.muslin.pin_group}\" has a weight of 0.5 or more: paint it, or clear Pin Group")
+    scale = np.linalg.norm(taken.matrix[:3, :3], axis=0)
+    if scale.max() > 1.0001 * scale.min():
+        say(INFO, "The scale differs by axis and is not applied: it is baked as you see it in the world")
+    cache = modifier_of(obj)
+    for modifier in obj.modifiers:
+        if modifier == cache:
+            break
+        if modifier.type in ("SUBSURF", "MULTIRES") and modifier.levels != modifier.render_levels:
+            say(WARNING, f"{modifier.name} above Muslin has other levels in renders: make them equal, or move it below")
+    return notices
+
+
+def fields_notices(scene):
+    notices = []
+    for obj in field_objects(scene):
+        field = obj.field
+        if field.type not in ("WIND", "TURBULENCE"):
+            notices.append(Notice(INFO, f"Its force field ({field.type.title()}) is ignored: muslin knows Wind and "
+                                        "Turbulence", obj.name))
+        elif field.falloff_power > 0 or field.use_max_distance or field.use_min_distance:
+            notices.append(Notice(INFO, "Its falloff is ignored: the wind is the same everywhere", obj.name))
+    return notices
+
+
+class Air:
+    """Wind and turbulence fields together are one moving air; [m/s]."""
+
+    def __init__(self, scene):
+        self.velocities, self.gust, self.gust_length, self.seed = [], 0.0, 0.0, 1
+        self._scene = scene
+
+    def sample(self, depsgraph):
+        scale = unit_scale(self._scene)
+        velocity, square = np.zeros(3), 0.0
+        for obj in field_objects(self._scene):
+            evaluated = obj.evaluated_get(depsgraph)
+            field = evaluated.field
+            if field.type == "WIND":
+                along = np.array(evaluated.matrix_world)[:3, 2]
+                length = np.linalg.norm(along)
+                if length > 0:
+                    velocity += field.strength * scale * along / length
+                square += (field.noise * field.strength * scale) ** 2
+                if field.noise:
+                    self.gust_length = max(self.gust_length, 1.0)
+                    self.seed = field.seed
+            elif field.type == "TURBULENCE":
+                square += (field.strength * scale) ** 2
+                self.gust_length = max(self.gust_length, field.size * scale)
+                self.seed = field.seed
+        self.velocities.append(tuple(float(x) for x in axes.turned(velocity)))
+        self.gust = max(self.gust, square**0.5)
+
+    def wind(self):
+        return Wind(self.velocities, self.gust, self.gust_length or 1.0, max(int(self.seed), 0))
+
+
+def scene_input(scene, names, snapshots, first, last):
+    """The scene as it stands at the first frame. `names`: object → body; `snapshots`: object → Snapshot."""
+    props = scene.muslin
+    scale, rate = unit_scale(scene), frame_rate(scene)
+    gravity = axes.turned(scene.gravity, scale) if scene.use_gravity else np.zeros(3)
+    result = SceneInput(title=f"{scene.name} of {os.path.basename(bpy.data.filepath)}", frames=last - first,
+                        frame_rate=rate, steps_per_frame=props.steps_per_frame, gravity=tuple(gravity),
+                        air_density=props.air_density, friction=props.friction)
+    for obj in cloth_objects(scene):
+        m, name = obj.muslin, names[obj.name]
+        cloth = Cloth(name=name, model=m.model.lower(), material=m.fabric, pinned=bool(snapshots[obj.name].pinned))
+        if m.fabric.endswith(".toml"):
+            cloth.material = bpy.path.abspath(m.fabric)
+        if m.model == "LATTICE":
+            cloth.voxel_width = (m.voxel_width or suggestion(obj, snapshots[obj.name])) * scale
+            cloth.thickness = m.thickness * scale
+        elif m.rest_shape == "BASE":
+            cloth.rest_mesh = name + ".rest.obj"
+        if m.use_release and cloth.pinned:
+            cloth.release = max(m.release_frame - first, 0) / rate or 1e-9
+        result.cloths.append(cloth)
+    for obj in collider_objects(scene):
+        result.colliders.append(Collider(names[obj.name]))
+    return result
+
+
+def measure(taken):
+    """(area, volume, closed) of the mesh as it stands in the world, in scene units."""
+    points = taken.points @ taken.matrix[:3, :3].T
+    area = volume = 0.0
+    edges = {}
+    start = 0
+    center = points.mean(0) if len(points) else 0
+    for size in taken.sizes:
+        ring = taken.corners[start:start + size]
+        start += size
+        p = points[ring] - center
+        fan = np.cross(p[1:-1] - p[0], p[2:] - p[0])
+        area += np.linalg.norm(fan.sum(0)) / 2
+        volume += (fan @ p[0]).sum() / 6
+        for a, b in zip(ring, np.roll(ring, -1)):
+            key = (min(a, b), max(a, b))
+            edges[key] = edges.get(key, 0) + 1
+    closed = bool(edges) and all(n > 1 for n in edges.values())
+    return area, abs(volume), closed
+
+
+def suggestion(obj, taken):
+    from .advice import suggest_width
+    return suggest_width(*measure(taken), obj.muslin.thickness)
+
+
+def base_points(obj):
+    points = np.empty(3 * len(obj.data.vertices), np.float32)
+    obj.data.vertices.foreach_get("co", points)
+    return points.reshape(-1, 3).astype(float)
+
+
+class Capture:
+    """Samples a scene frame by frame into `folder`. step() until it is True, then commit(), or abandon()."""
+
+    def __init__(self, scene, folder, first, last):
+        require_ready(scene)
+        self.scene_name, self.folder = scene.name, pathlib.Path(folder)
+        self.first, self.last, self.frame = first, last, first
+        self.scale = unit_scale(scene)
+        objects = cloth_objects(scene) + collider_objects(scene)
+        self.names = dict(zip((o.name for o in objects), body_names(o.name for o in objects)))
+        self.cloths = [o.name for o in cloth_objects(scene)]
+        self.matrices = {name: [] for name in self.cloths}
+        self.snapshots, self.writers, self.moves = {}, {}, {}
+        self.air = Air(scene)
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def scene(self):
+        scene = bpy.data.scenes.get(self.scene_name)
+        if scene is None:
+            raise Problem(f"The scene {self.scene_name} is gone")
+        return scene
+
+    def begin(self):
+        """Takes the first frame, with the meshes."""
+        scene = self.scene()
+        with below_the_cloth(cloth_objects(scene)), at_frame(scene, self.first):
+            depsgraph = depsgraph_of(scene)
+            for name in self.names:
+                self.snapshots[name] = snapshot(scene.objects[name], depsgraph, topology=True)
+        self.input = scene_input(scene, self.names, self.snapshots, self.first, self.last)
+
+    def notices(self):
+        scene = self.scene()
+        found = [n for name in self.cloths for n in notices_of(scene.objects[name], self.snapshots[name])]
+        return found + fields_notices(scene)
+
+    def write_meshes(self, folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, body in self.names.items():
+            taken = self.snapshots[name]
+            (folder / f"{body}.obj").write_text(taken.obj(self.scale), encoding="utf-8")
+        for cloth in self.input.cloths:
+            if not cloth.rest_mesh:
+                continue
+            name = next(n for n, body in self.names.items() if body == cloth.name)
+            taken, base = self.snapshots[name], base_points(bpy.data.objects[name])
+            if len(base) != len(taken.points):
+                raise Problem(f"{name}: its base mesh has {len(base)} vertices, with the modifiers above Muslin "
+                              f"{len(taken.points)}: set Rest Shape to At the Start")
+            points = axes.to_muslin(base, taken.matrix, self.scale)
+            (folder / cloth.rest_mesh).write_text(taken.obj(self.scale, points), encoding="utf-8")
+
+    def follows(self, name):
+        """Whether the object's points are wanted in every frame."""
+        if name not in self.cloths:
+            return True
+        return bool(self.snapshots[name].pinned) and bpy.data.objects[name].muslin.pin_animated
+
+    def step(self, seconds):
+        """Samples frames for about so long; True when all are there."""
+        import time
+        end = time.monotonic() + seconds
+        scene = self.scene()
+        with below_the_cloth(cloth_objects(scene)), at_frame(scene, self.frame):
+            while self.frame <= self.last:
+                scene.frame_set(self.frame)
+                self._sample(scene)
+                self.frame += 1
+                if time.monotonic() > end:
+                    break
+        return self.frame > self.last
+
+    def _sample(self, scene):
+        depsgraph = depsgraph_of(scene)
+        self.air.sample(depsgraph)
+        for name, body in self.names.items():
+            obj = scene.objects.get(name)
+            if obj is None:
+                raise Problem(f"{name} was deleted or renamed while it was sampled: bake again")
+            if name in self.matrices:
+                matrix = np.array(obj.evaluated_get(depsgraph).matrix_world)
+                self.matrices[name].append(matrix)
+            if not self.follows(name):
+                continue
+            taken, first = snapshot(obj, depsgraph), self.snapshots[name]
+            if len(taken.points) != len(first.points):
+                raise Problem(f"{name} has {counted(len(first.points), 'vertex', 'vertices')} in frame {self.first} and "
+                              f"{len(taken.points)} in frame {self.frame}: a modifier that changes the mesh must stand "
+                              "below Muslin")
+            points, start = taken.world(self.scale), first.world(self.scale)
+            held = first.pinned if name in self.matrices else slice(None)
+            size = max(float(np.ptp(start, axis=0).max()), 1e-9)
+            if np.abs(points[held] - start[held]).max() > 1e-6 * size:
+                self.moves[name] = True
+            if name not in self.writers:
+                self.writers[name] = point_cache.Writer(self.part(body), len(points))
+            self.writers[name].append(points)
+
+    def part(self, body):
+        return self.folder / f"{body}.motion.pc2.part"
+
+    def commit(self):
+        """Puts everything in place; returns what playback needs."""
+        for name, writer in self.writers.items():
+            writer.close()
+            body = self.names[name]
+            target = self.folder / f"{body}.motion.pc2"
+            if not self.moves.get(name):
+                self.part(body).unlink()
+                target.unlink(missing_ok=True)
+                continue
+            os.replace(self.part(body), target)
+            for part in self.input.cloths:
+                if part.name == body:
+                    part.pin = target.name
+            for part in self.input.colliders:
+                if part.name == body:
+                    part.sequence = target.name
+        self.writers = {}
+        self.input.wind = self.air.wind()
+        self.write_meshes(self.folder)
+        (self.folder / "scene.toml").write_text(scene_toml(self.input), encoding="utf-8")
+        objects = []
+        for name in self.cloths:
+            matrices = np.array(self.matrices[name])
+            if (matrices == matrices[0]).all():
+                matrices = matrices[:1]
+            objects.append({"object": name, "body": self.names[name], "matrices": matrices.tolist()})
+        return {"version": 1, "scene": self.scene_name, "frame_start": self.first, "frames": self.last - self.first,
+                "scale": self.scale, "objects": objects}
+
+    def abandon(self):
+        for name, writer in self.writers.items():
+            writer.close()
+            self.part(self.names[name]).unlink(missing_ok=True)
+        self.writers = {}
+
+
+@contextlib.contextmanager
+def at_frame(scene, frame):
+    """The scene at another frame, and back."""
+    now, sub = scene.frame_current, scene.frame_subframe
+    scene.frame_set(frame)
+    try:
+        yield
+    finally:
+        scene.frame_set(now, subframe=sub)

@@ -1,0 +1,195 @@
+"""The buttons. From a button a bake runs beside Blender; called by a script it blocks until the bake is done."""
+
+import bpy
+from bpy.types import Operator
+
+from . import bake_state as bs
+from . import playback
+from .gather import Problem, depsgraph_of, measure, snapshot, suggestion
+from .session import session_of, start_clock, wait
+
+
+class SessionOperator(Operator):
+    """Feeds an event to the session of the scene."""
+
+    def event(self, context):
+        raise NotImplementedError
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene is not None
+
+    def feed(self, context):
+        session = session_of(context.scene)
+        session.message = ""
+        session.feed(self.event(context))
+        if session.message:
+            self.report({"WARNING"}, session.message)
+        return session
+
+    def invoke(self, context, _event):
+        self.feed(context)
+        start_clock()
+        return {"FINISHED"}
+
+    def execute(self, context):
+        session = self.feed(context)
+        wait(session)
+        if session.state.phase == bs.Phase.FAILED:
+            self.report({"ERROR"}, session.state.problem)  # raises RuntimeError in the script that called
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class MUSLIN_OT_bake(SessionOperator):
+    bl_idname = "muslin.bake"
+    bl_label = "Bake"
+    bl_description = "Simulate all muslin cloth of this scene from the first frame on, in a process of its own"
+
+    def event(self, context):
+        first, last = context.scene.muslin.frames(context.scene)
+        return bs.Bake(last - first)
+
+
+class MUSLIN_OT_bake_from_current(SessionOperator):
+    bl_idname = "muslin.bake_from_current"
+    bl_label = "Bake from Current Frame"
+    bl_description = ("Keep the frames up to this one and simulate those behind it anew, with pins, forces and colliders "
+                      "as they now are")
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene is not None and context.scene.muslin.keep_states
+
+    def event(self, context):
+        session = session_of(context.scene)
+        first, last = context.scene.muslin.frames(context.scene)
+        return bs.BakeFrom(context.scene.frame_current - session.first_frame, last - first)
+
+
+class MUSLIN_OT_resume(SessionOperator):
+    bl_idname = "muslin.resume"
+    bl_label = "Resume"
+    bl_description = "Go on where the bake was cut off, with the scene as it was then"
+
+    def event(self, context):
+        return bs.Resume()
+
+
+class MUSLIN_OT_cancel(SessionOperator):
+    bl_idname = "muslin.cancel"
+    bl_label = "Cancel"
+    bl_description = "Stop after the step in work; what is baked stays. A second time: at once"
+
+    def event(self, context):
+        return bs.Cancel()
+
+
+class MUSLIN_OT_free(SessionOperator):
+    bl_idname = "muslin.free"
+    bl_label = "Free Bake"
+    bl_description = "Remove the bake and its files"
+
+    def event(self, context):
+        return bs.Free()
+
+
+class MUSLIN_OT_check(Operator):
+    bl_idname = "muslin.check"
+    bl_label = "Check"
+    bl_description = "Look at meshes and settings, and say what is wrong with them and what will be built"
+
+    def start(self, context):
+        session = session_of(context.scene)
+        problem = session.check()
+        if problem:
+            self.report({"WARNING"}, problem)
+        return session
+
+    def invoke(self, context, _event):
+        self.start(context)
+        start_clock()
+        return {"FINISHED"}
+
+    def execute(self, context):
+        wait(self.start(context))
+        return {"FINISHED"}
+
+
+def is_mesh(context):
+    return context.object is not None and context.object.type == "MESH"
+
+
+class RoleOperator(Operator):
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return is_mesh(context)
+
+
+class MUSLIN_OT_cloth_add(RoleOperator):
+    bl_idname = "muslin.cloth_add"
+    bl_label = "Muslin Cloth"
+    bl_description = "Let muslin simulate this mesh"
+
+    def execute(self, context):
+        context.object.muslin.role = "CLOTH"
+        playback.ensure_modifier(context.object)
+        return {"FINISHED"}
+
+
+class MUSLIN_OT_collider_add(RoleOperator):
+    bl_idname = "muslin.collider_add"
+    bl_label = "Muslin Collider"
+    bl_description = "Let muslin cloth collide with this mesh, standing or animated"
+
+    def execute(self, context):
+        context.object.muslin.role = "COLLIDER"
+        return {"FINISHED"}
+
+
+class MUSLIN_OT_remove(RoleOperator):
+    bl_idname = "muslin.remove"
+    bl_label = "Remove"
+    bl_description = "This mesh is not muslin's any more; its bake is not played"
+
+    def execute(self, context):
+        obj = context.object
+        cache = playback.modifier_of(obj)
+        if cache:
+            obj.modifiers.remove(cache)
+        obj.muslin.role = "NONE"
+        return {"FINISHED"}
+
+
+class MUSLIN_OT_suggest_width(RoleOperator):
+    bl_idname = "muslin.suggest_width"
+    bl_label = "Suggest"
+    bl_description = "The voxel width that gives about 8000 voxels"
+
+    def execute(self, context):
+        obj = context.object
+        try:
+            taken = snapshot(obj, depsgraph_of(context.scene), topology=True)
+        except Problem as problem:
+            self.report({"WARNING"}, str(problem))
+            return {"CANCELLED"}
+        m = obj.muslin
+        m.area, m.volume, m.closed = measure(taken)
+        m.voxel_width = suggestion(obj, taken)
+        return {"FINISHED"}
+
+
+CLASSES = (MUSLIN_OT_bake, MUSLIN_OT_bake_from_current, MUSLIN_OT_resume, MUSLIN_OT_cancel, MUSLIN_OT_free,
+           MUSLIN_OT_check, MUSLIN_OT_cloth_add, MUSLIN_OT_collider_add, MUSLIN_OT_remove, MUSLIN_OT_suggest_width)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,230 @@
+"""The Physics tab."""
+
+import textwrap
+
+import bpy
+from bpy.types import Panel
+
+from . import bake_state as bs
+from . import fabrics
+from .advice import ERROR, WARNING, counted, estimate_voxels, split_problem
+from .gather import cloth_objects, fields_notices, unit_scale
+from .playback import modifier_of, own_folder
+from .session import baking
+
+ICONS = {ERROR: "CANCEL", WARNING: "ERROR", "INFO": "INFO"}
+
+
+def paragraph(layout, text, width, icon="NONE", alert=False):
+    """Text over as many lines as the panel needs; Blender has no label that wraps."""
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    column.alert = alert
+    characters = max(20, int(width / 6.6 / bpy.context.preferences.system.ui_scale) - 8)
+    for i, line in enumerate(textwrap.wrap(text, characters) or [""]):
+        column.label(text=line, icon=icon if i == 0 else "BLANK1" if icon != "NONE" else "NONE")
+
+
+class MuslinPanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "physics"
+
+    @classmethod
+    def poll(cls, context):
+        return context.object and context.object.type == "MESH" and context.object.muslin.role != "NONE"
+
+
+class ClothPanel(MuslinPanel):
+    @classmethod
+    def poll(cls, context):
+        return context.object and context.object.type == "MESH" and context.object.muslin.role == "CLOTH"
+
+
+class PHYSICS_PT_muslin(MuslinPanel, Panel):
+    bl_label = "Muslin"
+
+    def draw(self, context):
+        layout, scene, obj = self.layout, context.scene, context.object
+        width = context.region.width
+        if obj.muslin.role == "COLLIDER":
+            paragraph(layout, "Muslin cloth collides with this mesh, standing or animated.", width)
+            return
+        session = baking(scene)
+        state = session.state if session else bs.State()
+        draw_state(layout, scene, session, state, width)
+        draw_buttons(layout, context, state)
+        if session:
+            for notice in session.notices:
+                if notice.level == ERROR and notice.text in state.problem:
+                    continue  # said above already
+                where = f"{notice.object}: " if notice.object and notice.object != obj.name else ""
+                paragraph(layout, where + notice.text, width, ICONS[notice.level], notice.level == ERROR)
+
+
+def draw_state(layout, scene, session, state, width):
+    box = layout.box()
+    if session and state.busy:
+        share, text = session.progress()
+        if hasattr(box, "progress"):
+            box.progress(factor=share, text=text)
+        else:
+            blocks = int(round(20 * share))
+            box.label(text="█" * blocks + "░" * (20 - blocks) + f"  {100 * share:.0f} %")
+            box.label(text=text)
+        return
+    if state.problem:
+        what, remedy = split_problem(state.problem)
+        paragraph(box, what, width, "CANCEL", alert=True)
+        if remedy:
+            paragraph(box, remedy[:1].upper() + remedy[1:], width, "FORWARD")
+    if state.frame >= 0:
+        first = session.first_frame
+        text = f"Baked: frames {first} to {first + state.frame}"
+        if state.frame < state.total:
+            text += f" of {first + state.total}"
+        box.label(text=text, icon="CHECKMARK")
+        if session.folder and bpy.data.filepath and session.folder != own_folder(scene):
+            paragraph(box, f"Plays the bake of another file, in {session.folder.parent.name}. Bake makes one of its own.",
+                      width, "INFO")
+    elif not state.problem:
+        box.label(text="Nothing is baked" if bpy.data.filepath else "Save the file, then bake", icon="INFO")
+    if session and session.message:
+        paragraph(box, session.message, width, "INFO")
+
+
+def draw_buttons(layout, context, state):
+    if state.busy:
+        layout.operator("muslin.cancel", icon="CANCEL")
+        return
+    column = layout.column(align=True)
+    row = column.row(align=True)
+    row.scale_y = 1.3
+    row.operator("muslin.bake", icon="PHYSICS")
+    if state.resumable:
+        row.operator("muslin.resume", icon="PLAY")
+    row = column.row(align=True)
+    row.enabled = state.frame >= 0
+    row.operator("muslin.bake_from_current")
+    row.operator("muslin.free")
+    row = column.row(align=True)
+    row.operator("muslin.check", icon="VIEWZOOM")
+
+
+class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
+    bl_label = "Fabric"
+    bl_parent_id = "PHYSICS_PT_muslin"
+
+    def draw(self, context):
+        layout, obj = self.layout, context.object
+        layout.use_property_split = True
+        m = obj.muslin
+        layout.prop(m, "model")
+        layout.prop(m, "fabric")
+        about = fabrics.description(m.fabric)
+        if about:
+            paragraph(layout, about, context.region.width, "INFO")
+        if m.model == "LATTICE":
+            layout.prop(m, "thickness")
+            row = layout.row(align=True)
+            row.prop(m, "voxel_width")
+            row.operator("muslin.suggest_width", text="", icon="LIGHT")
+        else:
+            layout.prop(m, "rest_shape")
+        draw_counts(layout, context, m)
+
+
+def draw_counts(layout, context, m):
+    session = baking(context.scene)
+    counts = session.counts.get(context.object.name) if session else None
+    if m.model == "LATTICE" and m.area and m.voxel_width:
+        n = estimate_voxels(m.area, m.volume, m.closed, m.thickness, m.voxel_width)
+        layout.label(text=f"About {counted(n, 'voxel')}")
+    if counts and counts["model"] == m.model.lower():
+        what = counted(counts["voxels"], "voxel") if m.model == "LATTICE" else counted(counts["triangles"], "triangle")
+        layout.label(text=f"Checked: {what}, {counted(counts['vertices'], 'vertex', 'vertices')}, {counts['mass']:.4g} kg")
+
+
+class PHYSICS_PT_muslin_pins(ClothPanel, Panel):
+    bl_label = "Pins"
+    bl_parent_id = "PHYSICS_PT_muslin"
+
+    def draw(self, context):
+        layout, obj = self.layout, context.object
+        layout.use_property_split = True
+        m = obj.muslin
+        layout.prop_search(m, "pin_group", obj, "vertex_groups", text="Pin Group")
+        column = layout.column()
+        column.enabled = bool(m.pin_group)
+        column.prop(m, "pin_animated")
+        row = column.row(heading="Release")
+        row.prop(m, "use_release", text="")
+        sub = row.row()
+        sub.enabled = m.use_release
+        sub.prop(m, "release_frame", text="")
+        cache = modifier_of(obj)
+        if cache and m.pin_group and m.pin_animated:
+            above = [x.name for x in obj.modifiers[: obj.modifiers.find(cache.name)]]
+            text = f"Follows {', '.join(above)}" if above else "Follows the object and its shape keys"
+            paragraph(layout, text + "; what stands below the Muslin modifier refines the cloth", context.region.width,
+                      "INFO")
+
+
+class PHYSICS_PT_muslin_scene(ClothPanel, Panel):
+    bl_label = "Scene"
+    bl_parent_id = "PHYSICS_PT_muslin"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, scene = self.layout, context.scene
+        layout.use_property_split = True
+        m = scene.muslin
+        layout.prop(m, "use_scene_range")
+        if not m.use_scene_range:
+            column = layout.column(align=True)
+            column.prop(m, "frame_start")
+            column.prop(m, "frame_end")
+        layout.prop(m, "steps_per_frame")
+        layout.prop(m, "air_density")
+        layout.prop(m, "friction")
+        layout.prop(m, "keep_states")
+        gravity = scene.gravity.length * unit_scale(scene) if scene.use_gravity else 0
+        layout.label(text=f"Gravity {gravity:.4g} m/s²" if gravity else "No gravity", icon="FORCE_FORCE")
+        if gravity and not 0.1 < gravity / 9.8 < 10:
+            paragraph(layout, "Unit Scale makes gravity far from 9.8 m/s²: set it under Scene > Gravity",
+                      context.region.width, "ERROR")
+        names = [o.name for o in cloth_objects(scene)]
+        layout.label(text="One bake of: " + ", ".join(names), icon="MOD_CLOTH")
+        for notice in fields_notices(scene):
+            paragraph(layout, f"{notice.object}: {notice.text}", context.region.width, "INFO")
+
+
+def draw_add(self, context):
+    """Two more buttons among Blender's own kinds of physics."""
+    obj = context.object
+    if not obj or obj.type != "MESH":
+        return
+    row = self.layout.row(align=True)
+    if obj.muslin.role == "NONE":
+        row.operator("muslin.cloth_add", icon="MOD_CLOTH")
+        row.operator("muslin.collider_add", icon="MOD_PHYSICS")
+    else:
+        label = "Muslin Cloth" if obj.muslin.role == "CLOTH" else "Muslin Collider"
+        row.operator("muslin.remove", text=label, icon="X")
+
+
+CLASSES = (PHYSICS_PT_muslin, PHYSICS_PT_muslin_cloth, PHYSICS_PT_muslin_pins, PHYSICS_PT_muslin_scene)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    if hasattr(bpy.types, "PHYSICS_PT_add"):
+        bpy.types.PHYSICS_PT_add.append(draw_add)
+
+
+def unregister():
+    if hasattr(bpy.types, "PHYSICS_PT_add"):
+        bpy.types.PHYSICS_PT_add.remove(draw_add)
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

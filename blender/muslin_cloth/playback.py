@@ -1,0 +1,198 @@
+"""From the cache of a run to a Mesh Cache modifier on every cloth: PC2 files beside the .blend file, in each
+object's own space, by a relative path. A machine without this add-on plays them."""
+
+import json
+import os
+import pathlib
+
+import bpy
+import numpy as np
+
+from . import axes, point_cache
+
+MODIFIER = "Muslin"
+DESCRIPTION = "bake.json"
+
+
+def modifier_of(obj):
+    """The Mesh Cache modifier that plays the bake, or None."""
+    return next((m for m in obj.modifiers if m.type == "MESH_CACHE" and m.name.startswith(MODIFIER)), None)
+
+
+def own_folder(scene):
+    """Where a bake of this file goes."""
+    stem = pathlib.Path(bpy.data.filepath).stem
+    safe = "".join(c if c.isalnum() or c in "-_ " else "_" for c in scene.name)
+    return pathlib.Path(bpy.path.abspath("//")) / f"muslin_{stem}" / safe
+
+
+def playing_folder(scene):
+    """The folder whose bake the scene plays: after Save As under another name that of the earlier file. None if
+    it plays none."""
+    for obj in scene.objects:
+        cache = modifier_of(obj) if obj.type == "MESH" else None
+        if cache and cache.filepath:
+            folder = pathlib.Path(bpy.path.abspath(cache.filepath)).parent
+            if (folder / DESCRIPTION).exists():
+                return folder
+    return None
+
+
+def read_description(folder):
+    try:
+        return json.loads((pathlib.Path(folder) / DESCRIPTION).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+
+
+def write_description(folder, description):
+    path = pathlib.Path(folder) / DESCRIPTION
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(description), encoding="utf-8")
+    os.replace(part, path)
+
+
+class Playback:
+    """Follows a run's caches while they grow."""
+
+    def __init__(self, folder, description):
+        self.folder, self.description = pathlib.Path(folder), description
+        self._readers, self._writers = {}, {}
+        self._matrices = {o["body"]: np.array(o["matrices"], float) for o in description["objects"]}
+
+    def path(self, body):
+        return self.folder / f"{body}.pc2"
+
+    def available(self):
+        """Last frame that every body has in the run's caches; -1: none."""
+        last = None
+        for item in self.description["objects"]:
+            try:
+                samples = self._reader(item["body"]).samples()
+            except (OSError, ValueError):
+                return -1
+            last = samples if last is None else min(last, samples)
+        return (last or 0) - 1
+
+    def _reader(self, body):
+        if body not in self._readers:
+            self._readers[body] = point_cache.Reader(self.folder / "run" / f"{body}.skin.pc2")
+        return self._readers[body]
+
+    def _matrix(self, body, frame):
+        matrices = self._matrices[body]
+        return matrices[min(frame, len(matrices) - 1)]
+
+    def _writer(self, body):
+        path, points = self.path(body), self._reader(body).points
+        try:
+            there = point_cache.Reader(path)
+            keep = there.samples() if there.points == points else 0
+        except (OSError, ValueError):
+            keep = 0
+        return point_cache.Writer(path, points, keep)
+
+    def show(self, frame):
+        """Brings the played caches to `frame`: what is missing is added, what lies behind it is cut off."""
+        for item in self.description["objects"]:
+            body = item["body"]
+            if body not in self._writers:
+                self._writers[body] = self._writer(body)
+            writer, reader = self._writers[body], self._reader(body)
+            writer.cut(frame + 1)
+            while writer.samples <= frame:
+                sample = writer.samples
+                points = reader.read(sample)
+                writer.append(axes.to_local(points, self._matrix(body, sample), self.description["scale"]))
+            writer.flush()
+
+    def remove(self):
+        self.close()
+        for item in self.description["objects"]:
+            self.path(item["body"]).unlink(missing_ok=True)
+
+    def close(self):
+        for writer in self._writers.values():
+            writer.close()
+        self._writers = {}
+
+    def attach(self, scene):
+        """Lets the modifiers play."""
+        for item in self.description["objects"]:
+            obj = scene.objects.get(item["object"])
+            if obj and obj.type == "MESH" and obj.muslin.role == "CLOTH" and self.path(item["body"]).exists():
+                attach(obj, self.path(item["body"]), self.description["frame_start"])
+
+
+def ensure_modifier(obj):
+    """Adds a Mesh Cache modifier behind all that deform the cloth and before what only refines it."""
+    cache = modifier_of(obj)
+    if cache:
+        return cache
+    cache = obj.modifiers.new(MODIFIER, "MESH_CACHE")
+    refining = ("SUBSURF", "SOLIDIFY", "BEVEL", "MULTIRES", "SMOOTH", "CORRECTIVE_SMOOTH", "WEIGHTED_NORMAL", "WIREFRAME",
+                "REMESH", "DECIMATE", "TRIANGULATE", "NODES")
+    place = len(obj.modifiers) - 1
+    while place > 0 and obj.modifiers[place - 1].type in refining:
+        place -= 1
+    move_modifier(obj, len(obj.modifiers) - 1, place)
+    return obj.modifiers[place]
+
+
+def move_modifier(obj, source, target):
+    if source != target:
+        obj.modifiers.move(source, target)
+
+
+SETTINGS = {"cache_format": "PC2", "deform_mode": "OVERWRITE", "time_mode": "FRAME", "play_mode": "SCENE",
+            "interpolation": "LINEAR", "forward_axis": "POS_Y", "up_axis": "POS_Z", "factor": 1.0, "frame_scale": 1.0}
+
+
+def attach(obj, path, frame_start):
+    """Sample n is shown in frame frame_start + n. What is as it should be is left alone."""
+    cache = ensure_modifier(obj)
+    wanted = dict(SETTINGS, filepath=bpy.path.relpath(str(path)), frame_start=float(frame_start))
+    for name, value in wanted.items():
+        if getattr(cache, name) != value:
+            setattr(cache, name, value)
+    obj.update_tag(refresh={"DATA"})
+
+
+def detach(scene):
+    for obj in scene.objects:
+        cache = modifier_of(obj) if obj.type == "MESH" else None
+        if cache and cache.filepath:
+            cache.filepath = ""
+            obj.update_tag(refresh={"DATA"})
+
+
+def remove_files(folder):
+    """Takes away what a bake left in its folder, and nothing else."""
+    folder = pathlib.Path(folder)
+    description = read_description(folder) or {"objects": []}
+    names = ["scene.toml", "worker.log", DESCRIPTION]
+    names += [f"{o['body']}.pc2" for o in description["objects"]]
+    for name in names:
+        (folder / name).unlink(missing_ok=True)
+    for pattern in ("*.obj", "*.motion.pc2"):
+        for path in folder.glob(pattern):
+            path.unlink()
+    for sub in ("check", "run"):
+        remove_tree(folder / sub)
+    for empty in (folder, folder.parent):
+        try:
+            empty.rmdir()
+        except OSError:
+            break
+
+
+def remove_tree(folder):
+    """The folder with its files and one level of folders: what a run and a check are."""
+    if not folder.is_dir():
+        return
+    for path in sorted(folder.rglob("*"), reverse=True):
+        if path.is_dir():
+            path.rmdir()
+        else:
+            path.unlink()
+    folder.rmdir()

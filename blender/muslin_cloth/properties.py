@@ -1,0 +1,87 @@
+"""What the artist sets, kept in the .blend file."""
+
+import bpy
+from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
+                       StringProperty)
+
+from . import fabrics
+
+
+def suggest_fabrics(props, _context, text):
+    return [name for name in fabrics.names(props.model.lower()) if text.lower() in name.lower()]
+
+
+def drop_estimate(props, _context):
+    props.area = 0
+
+
+class MuslinObject(bpy.types.PropertyGroup):
+    role: EnumProperty(
+        name="Role", items=[("NONE", "None", ""), ("CLOTH", "Cloth", "Simulated by muslin"),
+                            ("COLLIDER", "Collider", "Stands or moves in the way of muslin cloth")])
+    model: EnumProperty(
+        name="Kind", description="What the mesh is made into",
+        items=[("SHELL", "Cloth", "The mesh itself is thin cloth"),
+               ("LATTICE", "Solid", "The mesh is filled with voxels: things with a volume or a thickness")])
+    fabric: StringProperty(
+        name="Fabric", default="cotton", description="A material of muslin, or the path of a material file",
+        search=suggest_fabrics, search_options={"SUGGESTION"})
+    thickness: FloatProperty(
+        name="Thickness", subtype="DISTANCE", min=0, soft_max=1, precision=4, update=drop_estimate,
+        description="Of a solid made from an open mesh; 0 takes one voxel width")
+    voxel_width: FloatProperty(
+        name="Voxel Width", subtype="DISTANCE", min=0, soft_max=10, precision=4,
+        description="Half of it shows twice the detail and takes about eight times as long; 0 takes a suggestion")
+    pin_group: StringProperty(name="Pin Group", description="Vertices of weight 0.5 or more are held")
+    pin_animated: BoolProperty(
+        name="Follow Animation", default=True,
+        description="Held vertices follow shape keys, armatures and other modifiers above the Muslin modifier, and "
+                    "the object's own motion")
+    use_release: BoolProperty(name="Release", description="The pins let go at a frame")
+    release_frame: IntProperty(name="Release Frame", default=50)
+    rest_shape: EnumProperty(
+        name="Rest Shape", description="The shape that is free of stress",
+        items=[("START", "At the Start", "As it stands in the first frame"),
+               ("BASE", "Base Mesh", "The mesh without its modifiers and shape keys; only cloth")])
+    # Measured for the estimate of voxels, not settings.
+    area: FloatProperty(options={"HIDDEN"})
+    volume: FloatProperty(options={"HIDDEN"})
+    closed: BoolProperty(options={"HIDDEN"})
+
+
+class MuslinScene(bpy.types.PropertyGroup):
+    use_scene_range: BoolProperty(name="Scene Range", default=True, description="Bake the frame range of the scene")
+    frame_start: IntProperty(name="Start", default=1)
+    frame_end: IntProperty(name="End", default=250)
+    steps_per_frame: IntProperty(
+        name="Steps per Frame", default=10, min=1, soft_max=100,
+        description="More steps follow fast motion better and damp less")
+    air_density: FloatProperty(
+        name="Air Density", default=1.2, min=0, soft_max=10, description="kg/m³; 0 is no air: neither wind nor drag")
+    friction: FloatProperty(name="Friction", default=0.3, min=0, soft_max=1, description="Of cloth on everything")
+    keep_states: BoolProperty(
+        name="Keep States", default=True,
+        description="Keep the state of every frame, so that a bake can go on from any: 96 bytes per vertex and frame")
+
+    def frames(self, scene):
+        """(first, last) frame of the bake."""
+        if self.use_scene_range:
+            return scene.frame_start, scene.frame_end
+        return self.frame_start, max(self.frame_end, self.frame_start)
+
+
+CLASSES = (MuslinObject, MuslinScene)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Object.muslin = PointerProperty(type=MuslinObject)
+    bpy.types.Scene.muslin = PointerProperty(type=MuslinScene)
+
+
+def unregister():
+    del bpy.types.Scene.muslin
+    del bpy.types.Object.muslin
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

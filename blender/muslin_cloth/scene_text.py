@@ -1,0 +1,161 @@
+"""Writes the files muslin reads: OBJ meshes and scene.toml. Everything here is in muslin's axes and metres
+(axes.py). No Blender needed."""
+
+from dataclasses import dataclass, field
+from typing import List, Optional, Tuple
+
+import numpy as np
+
+Vec = Tuple[float, float, float]
+
+
+@dataclass
+class Cloth:
+    name: str  # of the body: names files
+    model: str  # "shell" | "lattice"
+    material: str  # a name of the library or the path of a material file
+    thickness: float = 0.0  # [m]; 0: muslin's default
+    voxel_width: float = 0.0  # [m], of a lattice
+    rest_mesh: str = ""  # file name
+    pin: str = ""  # file name of the sequence; "": stands still
+    pinned: bool = False
+    release: Optional[float] = None  # when the pin lets go [s]
+
+
+@dataclass
+class Collider:
+    name: str
+    sequence: str = ""  # file name; "": stands still
+
+
+@dataclass
+class Wind:
+    velocities: List[Vec]  # one, or one a frame [m/s]
+    gust: float = 0.0  # root mean square [m/s]
+    gust_length: float = 1.0  # [m]
+    seed: int = 1
+
+
+@dataclass
+class SceneInput:
+    title: str
+    frames: int  # last frame, from 0
+    frame_rate: float
+    steps_per_frame: int
+    gravity: Vec = (0.0, 0.0, 0.0)  # [m/s²]
+    air_density: float = 1.2  # [kg/m³]; 0: no air
+    wind: Optional[Wind] = None
+    cloths: List[Cloth] = field(default_factory=list)
+    colliders: List[Collider] = field(default_factory=list)
+    friction: float = 0.3
+    contact_distance: float = 0.0  # [m]; 0: muslin's default
+
+
+def body_names(names):
+    """A name for each object that can be part of a file name, all different even where case does not count."""
+    taken, result = set(), []
+    for name in names:
+        base = "".join(c if c.isalnum() or c in "-_" else "_" for c in name).strip("_")[:60] or "object"
+        candidate, n = base, 2
+        while candidate.lower() in taken:
+            candidate, n = f"{base}_{n}", n + 1
+        taken.add(candidate.lower())
+        result.append(candidate)
+    return result
+
+
+def quoted(text):
+    """A TOML string."""
+    escapes = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+    return '"' + "".join(escapes.get(c, c if ord(c) >= 32 and ord(c) != 127 else " ") for c in text) + '"'
+
+
+def number(x):
+    return repr(float(x))
+
+
+def vector(v):
+    return "[" + ", ".join(number(x) for x in v) + "]"
+
+
+def scene_toml(scene: SceneInput, moving: bool = True) -> str:
+    """`moving` = False leaves sequences out: the scene as it stands at the first frame, for a check."""
+    lines = [f"title = {quoted(scene.title)}", "", "[time]"]
+    lines += [f"duration = {number(max(scene.frames, 1) / scene.frame_rate)}",
+              f"frame_rate = {number(scene.frame_rate)}", f"steps_per_frame = {scene.steps_per_frame}"]
+    for cloth in scene.cloths:
+        lines += ["", "[[body]]"] + _body(cloth)
+    for cloth in scene.cloths:
+        if cloth.pinned:
+            lines += ["", "[[pin]]"] + _pin(cloth, moving)
+    for collider in scene.colliders:
+        lines += ["", "[[collider]]", f"name = {quoted(collider.name)}", 'shape = "mesh"',
+                  f"mesh = {quoted(collider.name + '.obj')}"]
+        if collider.sequence and moving:
+            lines.append(f"sequence = {quoted(collider.sequence)}")
+    if scene.colliders or len(scene.cloths) > 0:
+        lines += _contact(scene)
+    if any(scene.gravity):
+        lines += ["", "[[force]]", 'type = "gravity"', f"acceleration = {vector(scene.gravity)}"]
+    if scene.air_density > 0:
+        lines += ["", "[[force]]", 'type = "wind"'] + _wind(scene)
+    return "\n".join(lines) + "\n"
+
+
+def _body(cloth):
+    lines = [f"name = {quoted(cloth.name)}", f"mesh = {quoted(cloth.name + '.obj')}", f'model = "{cloth.model}"']
+    lines.append(f"material = {quoted(cloth.material)}")
+    if cloth.model == "lattice":
+        lines.append(f"voxel_width = {number(cloth.voxel_width)}")
+        if cloth.thickness > 0:
+            lines.append(f"thickness = {number(cloth.thickness)}")
+    elif cloth.rest_mesh:
+        lines.append(f"rest_mesh = {quoted(cloth.rest_mesh)}")
+    return lines
+
+
+def _pin(cloth, moving):
+    lines = [f"name = {quoted('pins of ' + cloth.name)}", f"body = {quoted(cloth.name)}",
+             'where = { group = "pinned" }']
+    if cloth.pin and moving:
+        lines.append(f"sequence = {quoted(cloth.pin)}")
+    if cloth.release is not None:
+        lines.append(f"until = {number(cloth.release)}")
+    return lines
+
+
+def _contact(scene):
+    return []
+
+
+def _wind(scene):
+    wind = scene.wind or Wind([(0.0, 0.0, 0.0)])
+    lines = [f"air_density = {number(scene.air_density)}"]
+    if all(v == wind.velocities[0] for v in wind.velocities):
+        lines.append(f"velocity = {vector(wind.velocities[0])}")
+    else:
+        keys = ",\n".join(f"  {{ time = {number(f / scene.frame_rate)}, value = {vector(v)} }}"
+                          for f, v in enumerate(wind.velocities))
+        lines.append(f"keyframes = [\n{keys},\n]")
+    if wind.gust > 0:
+        lines += [f"gust = {number(wind.gust)}", f"gust_length = {number(wind.gust_length)}", f"seed = {wind.seed}"]
+    return lines
+
+
+def obj_text(points, corners, sizes, uvs=None, pinned=None, flip=False):
+    """points (n, 3); corners: vertex of every polygon corner, polygon after polygon; sizes: corners of each
+    polygon; uvs (#corners, 2) or None; pinned: indices for the group `pinned`; flip turns polygons around."""
+    out = ["v %.9g %.9g %.9g" % tuple(p) for p in np.asarray(points)]
+    if uvs is not None:
+        out += ["vt %.9g %.9g" % tuple(uv) for uv in uvs]
+    starts = np.concatenate([[0], np.cumsum(sizes)])
+    corners = np.asarray(corners) + 1
+    for first, end in zip(starts[:-1], starts[1:]):
+        order = range(end - 1, first - 1, -1) if flip else range(first, end)
+        if uvs is None:
+            out.append("f " + " ".join(str(corners[c]) for c in order))
+        else:
+            out.append("f " + " ".join(f"{corners[c]}/{c + 1}" for c in order))
+    if pinned is not None and len(pinned):
+        out += ["g pinned", "p " + " ".join(str(v + 1) for v in pinned)]
+    return "\n".join(out) + "\n"

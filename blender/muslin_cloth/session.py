@@ -1,0 +1,474 @@
+"""A bake of one Blender scene: carries out what bake_state.transition says, and tells it what happens."""
+
+import json
+import pathlib
+import time
+
+import bpy
+
+from . import bake_state as bs
+from . import fabrics, playback, worker
+from .advice import ERROR, INFO, WARNING, Notice, of_polygons, of_report, problem_line
+from .gather import Capture, Problem, cloth_objects
+from .preferences import find_program, threads
+from .scene_text import scene_toml
+
+INTERVAL = 0.15  # between looks at the worker [s]
+SAMPLING = 0.2  # of sampling at a time [s]
+
+sessions = {}  # scene name → Session
+
+
+class Session:
+    def __init__(self, scene):
+        self.scene_name = scene.name
+        self.state = bs.State()
+        self.folder = None  # of the bake that is there or being made
+        self.notices, self.counts, self.message = [], {}, ""
+        self.capture = self.question = self.worker = self.playback = None
+        self._began = (0.0, 0)  # when the worker started, and at which frame
+        self._sessions_before = 0  # of the run that is resumed, until the worker has begun its own; then -1
+        self._checked_only = False
+        if bpy.data.filepath:
+            self.open(scene)
+
+    # What lies on the disk
+
+    def open(self, scene):
+        folder = playback.playing_folder(scene) or playback.own_folder(scene)
+        description = playback.read_description(folder)
+        if description is None:
+            return
+        self.folder, run = folder, folder / "run"
+        self.playback = playback.Playback(folder, description)
+        alive = worker.is_locked(run)
+        frame, total = self.playback.available(), description["frames"]
+        log, problem = folder / "worker.log", ""
+        if alive:
+            self.worker = worker.Orphan(run, description.get("pid", 0), log)
+            self._began, self._sessions_before = (time.monotonic(), max(frame, 0)), -1
+        elif frame < total and worker.run_status(run) == "running":
+            problem = f"The bake was cut off behind frame {frame + description['frame_start']}; Resume goes on"
+        elif worker.run_status(run) == "failed":
+            problem = problem_line(worker.read_log(log)) or worker.read_run(run).get("reason", "")
+        self.feed(bs.Opened(frame, total, alive, problem if frame >= 0 else ""))
+
+    def scene(self):
+        return bpy.data.scenes.get(self.scene_name)
+
+    @property
+    def first_frame(self):
+        return self.playback.description["frame_start"] if self.playback else 0
+
+    def seconds_left(self):
+        began, frame = self._began
+        done = self.state.frame - frame
+        if self.state.phase != bs.Phase.RUNNING or done <= 0:
+            return None
+        return (time.monotonic() - began) / done * (self.state.total - self.state.frame)
+
+    def progress(self):
+        """(share, text) of what is in work."""
+        phase, state = self.state.phase, self.state
+        if phase == bs.Phase.CHECKING:
+            return 0.0, "Checking"
+        if phase == bs.Phase.CAPTURING and self.capture:
+            done = self.capture.frame - self.capture.first
+            return done / max(state.next_total + 1, 1), f"Reading frame {self.capture.frame}"
+        share = max(state.frame, 0) / max(state.total, 1)
+        if phase == bs.Phase.STOPPING:
+            return share, "Stopping after this step"
+        left = self.seconds_left()
+        text = f"Frame {state.frame + self.first_frame} of {state.total + self.first_frame}"
+        return share, text if left is None else f"{text}, {clock(left)} left"
+
+    # Events in, effects out
+
+    def feed(self, event):
+        events = [event]
+        while events:
+            self.state, effects = bs.transition(self.state, events.pop(0))
+            for effect in effects:
+                follow_up = self._do(effect)
+                if follow_up is not None:
+                    events.append(follow_up)
+        redraw()
+
+    def _do(self, effect):
+        """Carries an effect out; returns an event if it failed at once."""
+        if isinstance(effect, bs.Tell):
+            self.message = effect.text
+        elif isinstance(effect, bs.StartCheck):
+            return self._start_check()
+        elif isinstance(effect, bs.StartCapture):
+            pass  # the capture was begun by the check
+        elif isinstance(effect, bs.Abandon):
+            self._abandon()
+        elif isinstance(effect, bs.RemoveBake):
+            self._remove()
+        elif isinstance(effect, bs.Show):
+            self._show(effect.frame)
+        elif isinstance(effect, bs.StartWorker):
+            return self._start_worker(effect.origin)
+        elif isinstance(effect, bs.Interrupt):
+            self.worker.interrupt()
+        elif isinstance(effect, bs.Kill):
+            self.worker.kill()
+        return None
+
+    def _start_check(self):
+        self.notices, self.message = [], ""
+        try:
+            self._begin_check()
+        except Problem as problem:
+            return bs.Checked(str(problem))
+        except OSError as error:
+            return bs.Checked(f"{error.strerror}: {error.filename}; choose a folder that can be written for the file")
+        return None
+
+    def _begin_check(self):
+        program = find_program()
+        if not program:
+            raise Problem("The program muslin was not found: set its place in Preferences > Add-ons > Muslin Cloth")
+        scene = self.scene()
+        first, last = scene.muslin.frames(scene)
+        folder = playback.own_folder(scene) if bpy.data.filepath else None
+        self.capture = Capture(scene, folder, first, last)
+        self.capture.begin()
+        self.notices += self.capture.notices()
+        check = folder / "check"
+        self.capture.write_meshes(check)
+        (check / "scene.toml").write_text(scene_toml(self.capture.input, moving=False), encoding="utf-8")
+        files = [c.name for c in self.capture.input.cloths] + [c.name for c in self.capture.input.colliders]
+        commands = [["check", "--json", str(check / f"{name}.obj")] for name in files]
+        commands.append(["check", "--json", str(check / "scene.toml")])
+        self.question = worker.Question(program, commands)
+
+    def _finish_check(self):
+        """The answers as notices; the first error is the event."""
+        question, self.question = self.question, None
+        inputs = self.capture.input
+        names = {body: name for name, body in self.capture.names.items()}
+        parts = [(c.name, c.model) for c in inputs.cloths] + [(c.name, "collider") for c in inputs.colliders]
+        problem = question.error
+        for (body, model), (code, out, err) in zip(parts, question.answers):
+            if code != 0:
+                self.notices.append(Notice(ERROR, in_blender(problem_line(err), names), names[body]))
+                continue
+            self.notices += of_report(json.loads(out), model, names[body])
+            self.notices += of_polygons(self.capture.snapshots[names[body]].sizes, names[body])
+        errors = [n for n in self.notices if n.level == ERROR]
+        if not errors and len(question.answers) > len(parts):
+            code, out, err = question.answers[-1]
+            if code != 0:
+                problem = problem or in_blender(problem_line(err), names)
+            else:
+                self._read_counts(json.loads(out), names)
+        playback.remove_tree(self.capture.folder / "check")
+        if errors:
+            problem = f"{errors[0].object}: {errors[0].text}"
+        return problem
+
+    def _read_counts(self, answer, names):
+        self.counts = {names[b["name"]]: b for b in answer["bodies"] if b["name"] in names}
+        known = {n.text for n in self.notices}
+        for warning in answer["warnings"]:
+            body, _, text = warning.removeprefix("body ").partition(": ")
+            text = text or warning
+            # The mesh's own faults were said above in Blender's words.
+            if warning.startswith("body ") and text[:1].isupper() or text in known or text[:1].isdigit():
+                continue
+            self.notices.append(Notice(WARNING, text[:1].upper() + text[1:], names.get(body, "")))
+
+    def check(self):
+        """Only looks; bakes nothing."""
+        if self.state.busy or self.question:
+            return "A bake is in work: cancel it first"
+        self._checked_only = True
+        failed = self._start_check()
+        if failed is None:
+            return ""
+        self._checked_only = False
+        self._abandon()
+        self.notices.append(Notice(ERROR, failed.problem))
+        return failed.problem
+
+    def _abandon(self):
+        if self.question:
+            self.question.cancel()
+            self.question = None
+        if self.capture:
+            self.capture.abandon()
+            playback.remove_tree(self.capture.folder / "check")
+            remove_if_empty(self.capture.folder)
+            self.capture = None
+
+    def _remove(self):
+        if self.playback:
+            self.playback.close()
+            self.playback = None
+        scene = self.scene()
+        if scene:
+            playback.detach(scene)
+        if self.folder and (not bpy.data.filepath or self.folder == playback.own_folder(scene)):
+            playback.remove_files(self.folder)  # that of an earlier file stays with it
+        self.counts = {}
+
+    def _show(self, frame):
+        if self.playback is None:
+            return
+        try:
+            self.playback.show(frame)
+        except (OSError, ValueError) as error:
+            self.message = f"Cannot write the playback: {error}"
+            return
+        self.attach()
+
+    def attach(self):
+        scene = self.scene()
+        if scene and self.playback and self.state.frame >= 0:
+            self.playback.attach(scene)
+            redraw()
+
+    def _start_worker(self, origin):
+        program = find_program()
+        if not program:
+            return bs.WorkerEnded(bs.EXIT_FILE, self.state.frame, "The program muslin was not found: set its place in "
+                                                                  "Preferences > Add-ons > Muslin Cloth")
+        try:
+            description = self._prepare_files(origin)
+            words = ["run", str(self.folder / "scene.toml"), "-o", str(self.folder / "run"), "--quiet",
+                     "--frames", str(description["frames"])]
+            scene = self.scene()
+            if scene is None or scene.muslin.keep_states:
+                words.append("--keep-states")
+            if threads():
+                words += ["--threads", str(threads())]
+            if origin is None:
+                words.append("--resume")
+            elif origin != bs.FRESH:
+                words += ["--resume-from", str(origin)]
+            self._sessions_before = sessions_of(self.folder / "run")
+            self.worker = worker.Worker(program, words, self.folder / "worker.log")
+            description["pid"] = self.worker.pid
+            playback.write_description(self.folder, description)
+        except (OSError, Problem) as error:
+            return bs.WorkerEnded(bs.EXIT_FILE, self.state.frame, str(error))
+        self._began = (time.monotonic(), max(self.state.frame, 0))
+        if self.state.frame >= 0:
+            self._show(self.state.frame)
+        return None
+
+    def _prepare_files(self, origin):
+        if origin is None:
+            return dict(self.playback.description)
+        self.folder = self.capture.folder
+        description = self.capture.commit()
+        self.capture = None
+        if self.playback:
+            self.playback.close()
+        self.playback = playback.Playback(self.folder, description)
+        self.playback.remove()  # the object may move otherwise than before: all frames are converted anew
+        return description
+
+    # The clock
+
+    def tick(self):
+        """Looks once at what is in work; True while there is something."""
+        if self.question and self.question.done():
+            problem = self._finish_check()
+            if self._checked_only:
+                self._checked_only = False
+                if problem and not any(problem.endswith(n.text) for n in self.notices):
+                    self.notices.append(Notice(ERROR, problem))
+                self._abandon()
+                redraw()
+            else:
+                if problem:
+                    self._abandon()
+                self.feed(bs.Checked(problem))
+        elif self.state.phase == bs.Phase.CAPTURING:
+            self._tick_capture()
+        elif self.state.phase in (bs.Phase.RUNNING, bs.Phase.STOPPING):
+            self._tick_worker()
+        return self.state.busy or self.question is not None
+
+    def _tick_capture(self):
+        try:
+            if self.capture.step(SAMPLING):
+                self.feed(bs.Captured())
+        except (Problem, OSError) as problem:
+            self._abandon()
+            self.feed(bs.Captured(str(problem)))
+        redraw()
+
+    def _tick_worker(self):
+        code = self.worker.ended()  # before the frames are counted: what it wrote last is then seen
+        frame = self.playback.available()
+        if code is None:
+            if self._has_begun():
+                self.feed(bs.Progressed(frame))
+            return
+        log = self.worker.problem()
+        self.worker = None
+        names = {o["body"]: o["object"] for o in self.playback.description["objects"]}
+        self.feed(bs.WorkerEnded(code, frame, in_blender(problem_line(log), names)))
+
+    def _has_begun(self):
+        """Until then the caches of a run that is gone back on hold frames that will be cut off."""
+        if self._sessions_before >= 0 and sessions_of(self.folder / "run") > self._sessions_before:
+            self._sessions_before = -1
+        return self._sessions_before < 0
+
+    def stop(self):
+        """Blender goes, or opens another file: the worker stops too, and can be resumed."""
+        self._abandon()
+        if self.worker:
+            self.worker.interrupt()
+        if self.playback:
+            self.playback.close()
+
+
+# What the command line calls otherwise than the panel.
+WORDS = (("start the run anew without --resume", "use Bake, from the start"),
+         ("start the run anew", "use Bake, from the start"), ("time.steps_per_frame", "Steps per Frame"),
+         ("`steps_per_frame`", "Steps per Frame"), ("`voxel_width`", "Voxel Width"), ("voxel_width", "Voxel Width"),
+         ("`thickness`", "Thickness"), (", then continue with --resume", ", then press Resume"))
+
+
+def in_blender(problem, names):
+    """An error of muslin without the paths of files the artist never saw, bodies by their objects' names."""
+    for mark in ("scene.toml: ", "scene.toml:"):
+        if mark in problem.split("; ")[0]:
+            problem = problem.split(mark, 1)[1]
+            problem = problem.lstrip("0123456789:").lstrip()
+            break
+    for body, name in names.items():
+        problem = problem.replace(f"`{body}`", f"\"{name}\"")
+    for word, in_panel in WORDS:
+        problem = problem.replace(word, in_panel)
+    return problem
+
+
+def sessions_of(run):
+    return len(worker.read_run(run).get("timings", {}).get("sessions", []))
+
+
+def clock(seconds):
+    s = round(seconds)
+    if s < 60:
+        return f"{s} s"
+    return f"{s // 60}:{s % 60:02} min" if s < 3600 else f"{s // 3600}:{s // 60 % 60:02} h"
+
+
+def remove_if_empty(folder):
+    for empty in (folder, folder.parent):
+        try:
+            empty.rmdir()
+        except OSError:
+            return
+
+
+def redraw():
+    for window in bpy.context.window_manager.windows if bpy.context.window_manager else ():
+        for area in window.screen.areas:
+            if area.type in ("PROPERTIES", "VIEW_3D"):
+                area.tag_redraw()
+
+
+def session_of(scene):
+    if scene.name not in sessions:
+        sessions[scene.name] = Session(scene)
+    return sessions[scene.name]
+
+
+def baking(scene):
+    """The session if there is one; asks the disk for nothing. For drawing."""
+    return sessions.get(scene.name)
+
+
+# The clock runs while something is in work.
+
+
+def _tick():
+    busy = False
+    for session in list(sessions.values()):
+        busy = session.tick() or busy
+    return INTERVAL if busy else None
+
+
+def start_clock():
+    if not bpy.app.background and not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=INTERVAL, persistent=True)
+
+
+def wait(session):
+    """Blocks until nothing is in work: for scripts and Blender without a window."""
+    try:
+        while session.tick():
+            time.sleep(0.02)
+    except KeyboardInterrupt:
+        session.feed(bs.Cancel())
+        while session.tick():
+            time.sleep(0.02)
+
+
+# What Blender does under us
+
+
+@bpy.app.handlers.persistent
+def on_load(*_):
+    sessions.clear()
+    for scene in bpy.data.scenes:
+        if cloth_objects(scene):
+            session_of(scene)
+    if any(s.state.busy for s in sessions.values()):
+        start_clock()
+
+
+@bpy.app.handlers.persistent
+def before_load(*_):
+    stop_all()
+
+
+@bpy.app.handlers.persistent
+def on_undo(*_):
+    """Undo takes settings back, not files: playback stays what was baked."""
+    for session in sessions.values():
+        session.attach()
+
+
+def stop_all():
+    for session in sessions.values():
+        session.stop()
+    sessions.clear()
+
+
+HANDLERS = (("load_pre", before_load), ("load_post", on_load), ("undo_post", on_undo), ("redo_post", on_undo))
+
+
+def register():
+    import atexit
+    for name, handler in HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+    atexit.register(stop_all)
+    bpy.app.timers.register(_open_once, first_interval=0.1)
+
+
+def _open_once():
+    """When the add-on is switched on in a file that is already open."""
+    for scene in bpy.data.scenes:
+        if cloth_objects(scene):
+            session_of(scene)
+    if any(s.state.busy for s in sessions.values()):
+        start_clock()
+
+
+def unregister():
+    import atexit
+    atexit.unregister(stop_all)
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+    for name, handler in HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
+    stop_all()

@@ -1,0 +1,20 @@
+// Points that move as samples say: what a point cache of an animation holds.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// Linear between samples, constant before the first and after the last.
+struct PointSequence {
+  std::size_t points = 0;
+  std::vector<double> times;               ///< of the samples [s], strictly ascending, at least one
+  std::vector<Eigen::Vector3f> positions;  ///< #samples by #points, sample after sample [m]
+
+  Vec3 at(double time, std::size_t point) const;
+};
+
+}  // namespace muslin

@@ -1,0 +1,22 @@
+// Reading animated points: PC2 and MDD point caches, numbered OBJ files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "muslin/geometry/point_sequence.hpp"
+
+namespace muslin {
+
+/// `.pc2`: sample n at start + n·rate frames. `.mdd`: at its own times. `NAME.####.obj`: the files whose
+/// number stands for the #, from the smallest on, one a frame, vertices only. A frame lasts 1/frame_rate;
+/// positions are metres, y up. Errors: file; input, if the file is damaged, has no sample or a position that
+/// is no number or beyond 1e9 m.
+PointSequence read_point_sequence(const std::filesystem::path& path, double frame_rate);
+
+/// The two caches from memory; `suffix` is ".pc2" or ".mdd", `file` is for messages.
+PointSequence read_point_sequence_from(std::string_view bytes, const std::string& suffix,
+                                       const std::string& file, double frame_rate);
+
+}  // namespace muslin
