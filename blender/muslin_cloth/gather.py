@@ -229,7 +229,8 @@ def scene_input(scene, names, snapshots, first, last):
         elif m.rest_shape == "BASE":
             cloth.rest_mesh = name + ".rest.obj"
         if m.use_release and cloth.pinned:
-            cloth.release = max(m.release_frame - first, 0) / rate or 1e-9
+            # Half a step later: in the frame itself they still hold.
+            cloth.release = (max(m.release_frame - first, 0) + 0.5 / props.steps_per_frame) / rate
         result.cloths.append(cloth)
     for obj in collider_objects(scene):
         result.colliders.append(Collider(names[obj.name]))

@@ -135,13 +135,16 @@ def ensure_modifier(obj):
     place = len(obj.modifiers) - 1
     while place > 0 and obj.modifiers[place - 1].type in refining:
         place -= 1
-    move_modifier(obj, len(obj.modifiers) - 1, place)
+    move_modifier(obj, cache, place)
     return obj.modifiers[place]
 
 
-def move_modifier(obj, source, target):
-    if source != target:
-        obj.modifiers.move(source, target)
+def move_modifier(obj, modifier, place):
+    if hasattr(obj.modifiers, "move"):  # not in Blender 3.4
+        obj.modifiers.move(obj.modifiers.find(modifier.name), place)
+        return
+    with bpy.context.temp_override(object=obj, active_object=obj):
+        bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=place)
 
 
 SETTINGS = {"cache_format": "PC2", "deform_mode": "OVERWRITE", "time_mode": "FRAME", "play_mode": "SCENE",

@@ -22,11 +22,15 @@ def threads():
     return found.threads if found else 0
 
 
+def changed(_preferences, _context):
+    find_program()
+
+
 class MuslinPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
     program: StringProperty(
-        name="Program", subtype="FILE_PATH", update=lambda self, context: find_program(),
+        name="Program", subtype="FILE_PATH", update=changed,
         description="The muslin program; empty: the one beside the add-on, or on the PATH")
     threads: IntProperty(name="Threads", min=0, description="0: one per core. The result is the same for any number")
 

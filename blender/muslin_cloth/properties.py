@@ -37,7 +37,7 @@ class MuslinObject(bpy.types.PropertyGroup):
         name="Follow Animation", default=True,
         description="Held vertices follow shape keys, armatures and other modifiers above the Muslin modifier, and "
                     "the object's own motion")
-    use_release: BoolProperty(name="Release", description="The pins let go at a frame")
+    use_release: BoolProperty(name="Release", description="The pins let go after a frame")
     release_frame: IntProperty(name="Release Frame", default=50)
     rest_shape: EnumProperty(
         name="Rest Shape", description="The shape that is free of stress",

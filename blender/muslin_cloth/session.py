@@ -336,6 +336,10 @@ WORDS = (("start the run anew without --resume", "use Bake, from the start"),
          ("`thickness`", "Thickness"), (", then continue with --resume", ", then press Resume"))
 
 
+PARTS = ((".material", "Fabric"), (".voxel_width", "Voxel Width"), (".thickness", "Thickness"), (".model", "Kind"),
+         (".rest_mesh", "Rest Shape"), (".mesh", "The mesh"))
+
+
 def in_blender(problem, names):
     """An error of muslin without the paths of files the artist never saw, bodies by their objects' names."""
     for mark in ("scene.toml: ", "scene.toml:"):
@@ -343,6 +347,11 @@ def in_blender(problem, names):
             problem = problem.split(mark, 1)[1]
             problem = problem.lstrip("0123456789:").lstrip()
             break
+    changed = "the bodies are not those of the run to resume; changed: "
+    if changed in problem:
+        settings = problem.split(changed)[1].split("; ")[0].split(", ")
+        parts = dict.fromkeys(next((panel for key, panel in PARTS if key in s), s) for s in settings)
+        return f"{', '.join(parts)} changed since the first frame; undo the change, or use Bake, from the start"
     for body, name in names.items():
         problem = problem.replace(f"`{body}`", f"\"{name}\"")
     for word, in_panel in WORDS:
