@@ -103,12 +103,14 @@ def draw_buttons(layout, context, state):
     row.operator("muslin.bake", icon="PHYSICS")
     if state.resumable:
         row.operator("muslin.resume", icon="PLAY")
-    row = column.row(align=True)
-    row.enabled = state.frame >= 0
-    row.operator("muslin.bake_from_current")
-    row.operator("muslin.free")
+    baked = column.column(align=True)
+    baked.enabled = state.frame >= 0
+    baked.operator("muslin.bake_from_current", icon="TRACKING_FORWARDS_SINGLE")
     row = column.row(align=True)
     row.operator("muslin.check", icon="VIEWZOOM")
+    free = row.row(align=True)
+    free.enabled = state.frame >= 0
+    free.operator("muslin.free", icon="TRASH")
 
 
 class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
@@ -204,13 +206,13 @@ def draw_add(self, context):
     obj = context.object
     if not obj or obj.type != "MESH":
         return
-    row = self.layout.row(align=True)
+    column = self.layout.column(align=True)
     if obj.muslin.role == "NONE":
-        row.operator("muslin.cloth_add", icon="MOD_CLOTH")
-        row.operator("muslin.collider_add", icon="MOD_PHYSICS")
+        column.operator("muslin.cloth_add", icon="MOD_CLOTH")
+        column.operator("muslin.collider_add", icon="MOD_PHYSICS")
     else:
         label = "Muslin Cloth" if obj.muslin.role == "CLOTH" else "Muslin Collider"
-        row.operator("muslin.remove", text=label, icon="X")
+        column.operator("muslin.remove", text=label, icon="X")
 
 
 CLASSES = (PHYSICS_PT_muslin, PHYSICS_PT_muslin_cloth, PHYSICS_PT_muslin_pins, PHYSICS_PT_muslin_scene)

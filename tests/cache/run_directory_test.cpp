@@ -288,7 +288,7 @@ TEST(RunDirectory, SaysWhatChangedInTheBodies) {
   changed.scene.resolved = R"({"title":"a small flag","body":[{"name":"flag","voxel_width":0.5}]})";
   Simulation simulation(std::make_shared<const Model>(std::move(changed)));
   expect_error(ErrorKind::input, "body.0.voxel_width",
-               [&] { RunWriter(scratch / "run", simulation, 4, {.resume = true}); });
+               [&] { RunWriter(scratch / "run", simulation, 4, true); });
 }
 
 TEST(RunDirectory, NotesOtherChangesOnResume) {

@@ -48,8 +48,8 @@ RunResult run_scene(const std::filesystem::path& file, const RunOptions& options
   };
   const auto model = std::make_shared<const Model>(build_model(scene, building));
   Simulation simulation(model);
-  RunWriter writer(options.directory, simulation, total,
-                   {options.resume, options.resume_from, options.keep_states});
+  RunWriter writer(options.directory, simulation, total, options.resume,
+                   {options.keep_states, options.resume_from});
 
   RunResult result;
   result.first_frame = simulation.frame();

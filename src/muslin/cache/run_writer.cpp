@@ -92,7 +92,7 @@ struct RunWriter::Parts {
   fs::path directory;
   Simulation& simulation;
   int total_frames;
-  RunStart options;
+  RunHistory history;
   DirectoryLock lock;
   std::vector<BodyCaches> caches;
   OutputFile diagnostics, probes;
@@ -103,11 +103,11 @@ struct RunWriter::Parts {
   int durable_frame = -1;  ///< of the newest checkpoint known to be on the disk
   Clock::time_point begin = Clock::now(), last_checkpoint = begin, last_sync = begin;
 
-  Parts(fs::path the_directory, Simulation& the_simulation, int frames, RunStart the_options)
+  Parts(fs::path the_directory, Simulation& the_simulation, int frames, RunHistory the_history)
       : directory(std::move(the_directory)),
         simulation(the_simulation),
         total_frames(frames),
-        options(the_options) {}
+        history(the_history) {}
   const Model& model() const { return simulation.model(); }
   void claim();
   void start();
@@ -203,22 +203,22 @@ void RunWriter::Parts::open_files(int frames) {
 /// Those a resume may begin from, the best first.
 std::vector<CheckpointFile> RunWriter::Parts::checkpoints_to_try() const {
   std::vector<CheckpointFile> all = list_checkpoints(directory);
-  if (options.resume_from < 0) return all;
+  if (history.resume_from < 0) return all;
   for (const CheckpointFile& file : all)
-    if (file.frame == options.resume_from && file.steps == 0) return {file};
+    if (file.frame == history.resume_from && file.steps == 0) return {file};
   std::string frames;
   for (const CheckpointFile& file : all)
     if (file.steps == 0 && frames.size() < 60)
       frames += (frames.empty() ? "" : ", ") + std::to_string(file.frame);
   throw Error(ErrorKind::input, {directory.string()},
-              fmt::format("there is no state of frame {} to go on from", options.resume_from),
+              fmt::format("there is no state of frame {} to go on from", history.resume_from),
               frames.empty()
                   ? "start the run anew"
                   : fmt::format("there are those of frames {}; a run with --keep-states keeps all", frames));
 }
 
 bool RunWriter::Parts::resume() {
-  if (!is_run(directory) && options.resume_from < 0) return false;
+  if (!is_run(directory) && history.resume_from < 0) return false;
   const std::vector<CheckpointFile> checkpoints = checkpoints_to_try();
   if (checkpoints.empty()) return false;
   const Json run = Json::parse(read_file(directory / "run.json"), nullptr, false);
@@ -305,7 +305,7 @@ void RunWriter::Parts::prune_checkpoints() const {
   for (const CheckpointFile& file : list_checkpoints(directory)) {
     const bool newest = file.frame == simulation.frame() && file.steps == simulation.steps_done();
     const bool finished_frame = file.steps == 0 && file.frame <= simulation.frame();
-    if (newest || (finished_frame && (options.keep_states || kept < 2 || file.frame == durable_frame))) {
+    if (newest || (finished_frame && (history.keep_states || kept < 2 || file.frame == durable_frame))) {
       if (finished_frame) ++kept;
       continue;
     }
@@ -350,14 +350,15 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
   write_atomically(directory / "run.json", run.dump(2) + "\n");
 }
 
-RunWriter::RunWriter(fs::path directory, Simulation& simulation, int total_frames, RunStart start)
-    : parts_(std::make_unique<Parts>(std::move(directory), simulation, total_frames, start)) {
+RunWriter::RunWriter(fs::path directory, Simulation& simulation, int total_frames, bool resume,
+                     RunHistory history)
+    : parts_(std::make_unique<Parts>(std::move(directory), simulation, total_frames, history)) {
   for (const Body& body : simulation.model().bodies) body_files(body.name);  // refuses impossible names
   parts_->claim();
   std::vector<std::string> bodies;
   for (const Body& body : simulation.model().bodies) bodies.push_back(body.name);
   remove_unfinished_files(parts_->directory, bodies);
-  parts_->resumed = start.resume && parts_->resume();
+  parts_->resumed = resume && parts_->resume();
   if (!parts_->resumed) {
     parts_->start();
     return;
@@ -381,7 +382,7 @@ void RunWriter::write_frame() {
   const auto now = Clock::now();
   const bool durable = now - parts.last_sync >= sync_interval;
   const std::size_t state_bytes = 4 * sizeof(Vec3) * parts.model().vertex_count();
-  const bool seldom = state_bytes > small_state && !parts.options.keep_states;
+  const bool seldom = state_bytes > small_state && !parts.history.keep_states;
   if (seldom && now - parts.last_checkpoint < large_state_interval) return;
   if (durable) parts.sync();
   parts.write_checkpoint(durable);

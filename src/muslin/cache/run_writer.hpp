@@ -14,11 +14,10 @@ namespace muslin {
 enum class RunStatus { running, finished, interrupted, failed };
 const char* name_of(RunStatus status);
 
-/// Where a run begins, and how far back it can be taken up again.
-struct RunStart {
-  bool resume = false;       ///< go on from a checkpoint, if there is one
-  int resume_from = -1;      ///< that of this frame; −1: the newest. What lies behind it is cut off.
+/// How far back a run can be taken up again.
+struct RunHistory {
   bool keep_states = false;  ///< keep the checkpoint of every frame
+  int resume_from = -1;  ///< resume from that of this frame and cut off what lies behind it; −1: the newest
 };
 
 /// Writes a run. One process at a time; a lock in `checkpoint/` sees to it.
@@ -30,12 +29,13 @@ struct RunStart {
 /// of every frame, whatever its size.
 class RunWriter {
  public:
-  /// Begins a run at the simulation's frame 0, or with `start.resume` restores the simulation from the newest
-  /// checkpoint, or that of `start.resume_from`, and goes on behind it; without any it begins.
+  /// Begins a run at the simulation's frame 0, or with `resume` restores the simulation from the newest
+  /// checkpoint, or that of `history.resume_from`, and goes on behind it; without any it begins.
   /// An earlier run in `directory` is replaced, only muslin's own files. Errors: file, if the directory
   /// cannot be made or written, holds something else than a run, or is being written by another process;
-  /// input, if the run to resume has other bodies, naming what changed, or no state of `start.resume_from`.
-  RunWriter(std::filesystem::path directory, Simulation& simulation, int total_frames, RunStart start);
+  /// input, if the run to resume has other bodies, naming what changed, or no state of `history.resume_from`.
+  RunWriter(std::filesystem::path directory, Simulation& simulation, int total_frames, bool resume,
+            RunHistory history = {});
   /// Leaves the status `running`, as a killed process does, unless finish() was called.
   ~RunWriter();
 

@@ -35,8 +35,8 @@ struct Pin {
   double from = 0;                                         ///< [s]
   double until = std::numeric_limits<double>::infinity();  ///< [s]
   Motion motion;
-  std::shared_ptr<const PointSequence> sequence;  ///< null: `motion` decides
-  std::vector<int> points;                        ///< #vertices: the point of the sequence each follows
+  std::shared_ptr<const PointSequence> sequence = nullptr;  ///< null: `motion` decides
+  std::vector<int> points = {};  ///< #vertices: the point of the sequence each follows
 
   bool active(double time) const { return time >= from && time < until; }
 };

@@ -1,0 +1,168 @@
+"""Draws the panel in a real window and takes pictures of it: `blender/tests/screenshots OUT` runs it under Xvfb.
+
+blender --factory-startup --python screenshot_panel.py -- OUT"""
+
+import pathlib
+import sys
+import tempfile
+import traceback
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import bpy
+
+import host
+from host import cloth, grid
+
+OUT = pathlib.Path(sys.argv[sys.argv.index("--") + 1]).resolve()
+steps = []
+
+
+def step(function):
+    steps.append(function)
+    return function
+
+
+def window():
+    return bpy.context.window_manager.windows[0]
+
+
+def picture(name):
+    bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+    with bpy.context.temp_override(window=window()):
+        bpy.ops.screen.screenshot(filepath=str(OUT / f"{name}.png"))
+
+
+def properties_area():
+    """A tall one, split off the view."""
+    view = next(a for a in window().screen.areas if a.type == "VIEW_3D")
+    known = set(window().screen.areas)
+    with bpy.context.temp_override(window=window(), area=view):
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=0.52)
+    area = next(a for a in window().screen.areas if a not in known)
+    area.type = "PROPERTIES"
+    return area
+
+
+@step
+def scene_with_a_flag():
+    folder = tempfile.mkdtemp(prefix="muslin.")
+    for obj in list(bpy.data.objects):
+        if obj.type == "MESH":
+            bpy.data.objects.remove(obj)
+    obj = grid("Flag", n=24, size=1.0)
+    obj.location.z = -0.5
+    bpy.context.scene.frame_end = 400
+    bpy.context.scene.muslin.steps_per_frame = 6
+    bpy.ops.wm.save_as_mainfile(filepath=folder + "/flag.blend")
+    properties_area()
+    for view in (a for a in window().screen.areas if a.type == "VIEW_3D"):
+        region = view.spaces[0].region_3d
+        region.view_distance, region.view_location = 3.0, (0, 0, 0.4)
+        view.spaces[0].shading.type = "SOLID"
+
+
+@step
+def physics():
+    tallest = max((a for a in window().screen.areas if a.type == "PROPERTIES"), key=lambda a: a.height)
+    tallest.spaces[0].context = "PHYSICS"
+
+
+@step
+def before():
+    picture("1_add")
+
+
+@step
+def added():
+    cloth(bpy.context.view_layer.objects.active)
+    bpy.context.scene.frame_set(1)
+
+
+@step
+def settings():
+    picture("2_settings")
+    assert bpy.ops.muslin.check("INVOKE_DEFAULT") == {"FINISHED"}
+
+
+@step
+def checked():
+    if host.session().question:
+        return "again"
+    picture("3_checked")
+    bpy.ops.muslin.bake("INVOKE_DEFAULT")
+
+
+@step
+def running():
+    """The clock of the add-on runs the bake: nothing here ticks it."""
+    state = host.session().state
+    if state.frame < 30 and state.busy:
+        return "again"
+    assert state.busy, f"it should still be at work: {state}"
+    bpy.context.scene.frame_set(24)
+    picture("4_baking")
+    bpy.ops.muslin.cancel("INVOKE_DEFAULT")
+
+
+@step
+def stopped():
+    state = host.session().state
+    if state.busy:
+        return "again"
+    assert state.resumable, state
+    picture("5_stopped")
+    bpy.ops.muslin.resume("INVOKE_DEFAULT")
+
+
+@step
+def done():
+    state = host.session().state
+    if state.busy:
+        return "again"
+    assert state.phase.value == "done", state
+    bpy.context.scene.frame_set(60)
+    picture("6_done")
+
+
+@step
+def bad():
+    obj = bpy.context.view_layer.objects.active
+    mesh = obj.data
+    mesh.vertices.add(3)
+    bpy.context.scene.frame_set(1)
+    bpy.ops.muslin.bake("INVOKE_DEFAULT")
+
+
+@step
+def refused():
+    state = host.session().state
+    if state.busy:
+        return "again"
+    assert "Delete Loose" in state.problem, state
+    picture("7_refused")
+
+
+def run():
+    try:
+        if steps[0]() != "again":
+            steps.pop(0)
+    except Exception:
+        traceback.print_exc()
+        leave(1)
+    if not steps:
+        print("screenshots done")
+        leave(0)
+    return 0.3
+
+
+def leave(code):
+    host.module("session").stop_all()
+    sys.stdout.flush()
+    import os
+    os._exit(code)
+
+
+OUT.mkdir(parents=True, exist_ok=True)
+host.enable()
+bpy.app.timers.register(run, first_interval=1.0)

@@ -1,0 +1,282 @@
+"""Axes, caches, scene files, advice and worker: all that needs no Blender. The scenes are read by the program."""
+
+import json
+import os
+import pathlib
+import signal
+import tempfile
+import time
+import tomllib
+import unittest
+
+import numpy as np
+
+from support import load
+
+axes, point_cache, scene_text = load("axes"), load("point_cache"), load("scene_text")
+advice, worker, fabrics = load("advice"), load("worker"), load("fabrics")
+
+PROGRAM = os.environ.get("MUSLIN_PROGRAM", str(pathlib.Path(__file__).parents[2] / "build" / "release" / "muslin"))
+
+
+class Scratch(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory(prefix="muslin.")
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+
+class Axes(unittest.TestCase):
+    def test_up_is_up_and_right_stays_right_handed(self):
+        np.testing.assert_array_equal(axes.turned([0, 0, 1]), [0, 1, 0])
+        np.testing.assert_array_equal(axes.turned([1, 0, 0]), [1, 0, 0])
+        self.assertEqual(np.linalg.det(axes.TURN), 1)
+        v = np.random.default_rng(1).normal(size=(5, 3))
+        np.testing.assert_allclose(axes.turned(v, 2), 2 * v @ axes.TURN.T)
+
+    def test_there_and_back(self):
+        rng = np.random.default_rng(2)
+        for _ in range(20):
+            matrix = np.eye(4)
+            matrix[:3] = rng.normal(size=(3, 4))
+            local = rng.normal(size=(7, 3))
+            back = axes.to_local(axes.to_muslin(local, matrix, 0.01), matrix, 0.01)
+            np.testing.assert_allclose(back, local, atol=1e-9)
+
+    def test_without_a_transform_nothing_is_rounded(self):
+        local = np.random.default_rng(3).normal(size=(50, 3)).astype(np.float32)
+        there = axes.to_muslin(local, np.eye(4), 1.0).astype(np.float32)
+        np.testing.assert_array_equal(axes.to_local(there, np.eye(4), 1.0).astype(np.float32), local)
+
+
+class PointCache(Scratch):
+    def test_grows_and_is_cut(self):
+        path = self.folder / "a.pc2"
+        samples = np.random.default_rng(4).normal(size=(5, 3, 3)).astype(np.float32)
+        out = point_cache.Writer(path, 3)
+        for i, sample in enumerate(samples):
+            out.append(sample)
+            out.flush()
+            self.assertEqual(point_cache.Reader(path).samples(), i + 1)
+        out.cut(4)
+        out.close()
+        self.assertEqual(path.stat().st_size, 32 + 4 * 36)
+        out = point_cache.Writer(path, 3, keep=2)
+        out.append(samples[4])
+        out.close()
+        reader = point_cache.Reader(path)
+        self.assertEqual((reader.points, reader.samples()), (3, 3))
+        for sample, want in zip(range(3), samples[[0, 1, 4]]):
+            np.testing.assert_array_equal(reader.read(sample), want)
+
+    def test_a_promise_without_data_is_not_a_sample(self):
+        path = self.folder / "a.pc2"
+        out = point_cache.Writer(path, 2)
+        out.append(np.zeros((2, 3)))
+        out.append(np.ones((2, 3)))
+        out.close()
+        with open(path, "r+b") as file:
+            file.truncate(32 + 24 + 23)
+        self.assertEqual(point_cache.Reader(path).samples(), 1)
+        with self.assertRaises(ValueError):
+            point_cache.Reader(path).read(1)
+
+    def test_refuses_what_is_no_cache(self):
+        for content in (b"", b"POINTCACHE2", b"x" * 40):
+            (self.folder / "bad.pc2").write_bytes(content)
+            with self.assertRaises(ValueError):
+                point_cache.Reader(self.folder / "bad.pc2")
+        out = point_cache.Writer(self.folder / "a.pc2", 2)
+        self.addCleanup(out.close)
+        with self.assertRaises(ValueError):
+            out.append(np.zeros((3, 3)))
+
+
+class SceneText(Scratch):
+    def square(self, name, **words):
+        points = [(0, 1, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1)]
+        text = scene_text.obj_text(points, [0, 1, 2, 3], [4], **words)
+        (self.folder / f"{name}.obj").write_text(text)
+
+    def scene(self):
+        return scene_text.SceneInput(
+            title='A "quoted" title\n', frames=12, frame_rate=23.976, steps_per_frame=3, gravity=(0, -9.81, 0),
+            wind=scene_text.Wind([(1, 0, 0), (2, 0, 0)], gust=0.5, gust_length=2, seed=7),
+            cloths=[scene_text.Cloth("a b", "shell", "cotton", pinned=True, pin="a b.pc2", rest_mesh="a b.obj"),
+                    scene_text.Cloth("solid", "lattice", "rubber", thickness=0.2, voxel_width=0.2, pinned=True,
+                                     release=0.25)])
+
+    def check(self, scene, moving=False):
+        self.square("a b", uvs=[(0, 0), (1, 0), (1, 1), (0, 1)], pinned=[0, 1])
+        self.square("solid", pinned=[2])
+        (self.folder / "scene.toml").write_text(scene_text.scene_toml(scene, moving))
+        return worker.ask(PROGRAM, "check", "--json", str(self.folder / "scene.toml"))
+
+    def test_the_program_reads_it(self):
+        scene = self.scene()
+        writer = point_cache.Writer(self.folder / "a b.pc2", 4)
+        writer.append(np.zeros((4, 3)))
+        writer.close()
+        for moving in (False, True):
+            code, out, err = self.check(scene, moving)
+            self.assertEqual((code, err), (0, ""))
+            told = json.loads(out)
+            self.assertEqual([b["name"] for b in told["bodies"]], ["a b", "solid"])
+            self.assertEqual([b["model"] for b in told["bodies"]], ["shell", "lattice"])
+            self.assertEqual(told["time"]["frames"], 12)
+            self.assertEqual([p["name"] for p in told["pins"]], ["pins of a b", "pins of solid"])
+            self.assertEqual(told["pins"][0]["vertices"], 2)
+            self.assertEqual([f["type"] for f in told["forces"]], ["gravity", "wind"])
+
+    def test_it_says_what_was_asked(self):
+        scene = self.scene()
+        told = tomllib.loads(scene_text.scene_toml(scene))
+        self.assertEqual(told["title"], 'A "quoted" title\n')
+        self.assertEqual(told["pin"][0]["sequence"], "a b.pc2")
+        self.assertEqual(told["pin"][1]["until"], 0.25)
+        self.assertEqual(told["force"][1]["keyframes"][1], {"time": 1 / 23.976, "value": [2, 0, 0]})
+        self.assertEqual(told["force"][1]["gust"], 0.5)
+        scene.wind = scene_text.Wind([(3, 0, 0)] * 5)
+        self.assertEqual(tomllib.loads(scene_text.scene_toml(scene))["force"][1]["velocity"], [3, 0, 0])
+        scene.wind, scene.air_density, scene.gravity = None, 0, (0, 0, 0)
+        self.assertNotIn("force", tomllib.loads(scene_text.scene_toml(scene)))
+
+    def test_a_mesh_keeps_its_order_and_can_be_turned_around(self):
+        self.square("f", flip=True)
+        self.assertIn("f 4 3 2 1", (self.folder / "f.obj").read_text())
+        self.square("g", uvs=[(0, 0), (1, 0), (1, 1), (0, 1)])
+        self.assertIn("f 1/1 2/2 3/3 4/4", (self.folder / "g.obj").read_text())
+
+    def test_names_fit_files_and_differ(self):
+        names = scene_text.body_names(["Cloth", "cloth", "a/b", "a:b", "..", "é.001", "x" * 200])
+        self.assertEqual(len({n.lower() for n in names}), 7)
+        for name in names:
+            self.assertRegex(name, r"^[\w-]{1,64}$")
+
+
+class Advice(unittest.TestCase):
+    def report(self, **changes):
+        return dict({"faces": 10, "non_manifold_edges": 0, "degenerate_faces": 0, "duplicate_faces": 0,
+                     "unused_vertices": 0, "flipped_edges": 0, "closed": False, "open_edges": 4, "min": [0, 0, 0],
+                     "max": [1, 1, 0]}, **changes)
+
+    def levels(self, model="shell", **changes):
+        return [n.level for n in advice.of_report(self.report(**changes), model, "Cloth")]
+
+    def test_a_good_cloth_needs_none(self):
+        self.assertEqual(self.levels(), [])
+
+    def test_each_fault_is_said_and_stops_a_shell_only(self):
+        for fault in ("non_manifold_edges", "degenerate_faces", "duplicate_faces", "unused_vertices"):
+            self.assertEqual(self.levels(**{fault: 2}), [advice.ERROR], fault)
+            self.assertIn(advice.WARNING, self.levels("lattice", **{fault: 2}), fault)
+            self.assertNotIn(advice.ERROR, self.levels("lattice", **{fault: 2}), fault)
+        self.assertEqual(self.levels(flipped_edges=1), [advice.WARNING])
+        self.assertEqual(self.levels(faces=0), [advice.ERROR])
+        self.assertEqual(self.levels(max=[1000, 1, 0]), [advice.WARNING])
+
+    def test_grammar_of_one(self):
+        said = advice.of_report(self.report(unused_vertices=1), "shell", "Cloth")[0].text
+        self.assertTrue(said.startswith("1 vertex belongs"))
+
+    def test_the_error_among_what_the_program_prints(self):
+        log = "muslin: warning: thin\n 40 %  frame 4\nmuslin: a.toml:3:1: no; do\nmuslin: resumed with force\n"
+        self.assertEqual(advice.problem_line(log), "a.toml:3:1: no; do")
+        self.assertEqual(advice.split_problem("no; or; do"), ("no; or", "do"))
+        self.assertEqual(advice.problem_line(""), "")
+
+    def test_the_suggested_width_gives_about_as_many_voxels_as_promised(self):
+        cube = (6.0, 1.0, True, 0.0)
+        sheet = (2.0, 0.0, False, 0.0)
+        thick = (2.0, 0.0, False, 0.1)
+        for shape in (cube, sheet, thick):
+            width = advice.suggest_width(*shape)
+            self.assertAlmostEqual(advice.estimate_voxels(*shape, width) / 8000, 1, delta=0.2)
+        self.assertEqual(advice.suggest_width(0, 0, False, 0), 0)
+
+
+class Estimates(Scratch):
+    def test_estimates_against_the_program(self):
+        """A cube and a ball of 0.1 m voxels: within a fifth of what is built."""
+        n = 12
+        grid = [(i, j) for j in range(n) for i in range(2 * n)]
+        points = [(np.sin(t) * np.cos(p), np.cos(t), np.sin(t) * np.sin(p))
+                  for t in (np.pi * (j + 0.5) / n for j in range(n)) for p in (np.pi * i / n for i in range(2 * n))]
+        points += [(0, 1, 0), (0, -1, 0)]
+        at = lambda i, j: j * 2 * n + i % (2 * n)
+        faces = [(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)) for i, j in grid if j < n - 1]
+        faces += [(2 * n * n, at(i + 1, 0), at(i, 0)) for i in range(2 * n)]
+        faces += [(2 * n * n + 1, at(i, n - 1), at(i + 1, n - 1)) for i in range(2 * n)]
+        text = scene_text.obj_text(points, [v for f in faces for v in f], [len(f) for f in faces])
+        (self.folder / "ball.obj").write_text(text)
+        scene = scene_text.SceneInput("ball", 1, 24, 1, cloths=[scene_text.Cloth("ball", "lattice", "rubber",
+                                                                                 voxel_width=0.1)])
+        (self.folder / "scene.toml").write_text(scene_text.scene_toml(scene))
+        code, out, err = worker.ask(PROGRAM, "check", "--json", str(self.folder / "scene.toml"))
+        self.assertEqual(code, 0, err)
+        built = json.loads(out)["bodies"][0]["voxels"]
+        estimate = advice.estimate_voxels(4 * np.pi, 4 / 3 * np.pi, True, 0, 0.1)
+        self.assertAlmostEqual(estimate / built, 1, delta=0.2)
+
+
+class Workers(Scratch):
+    def script(self, text):
+        path = self.folder / "program"
+        path.write_text("#!/bin/sh\n" + text)
+        path.chmod(0o755)
+        return str(path)
+
+    def wait(self, condition):
+        end = time.monotonic() + 20
+        while not condition():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+
+    def test_how_a_worker_ends(self):
+        for text, code in (("exit 0", 0), ("exit 4", 4), ("kill -9 $$", -9)):
+            work = worker.Worker(self.script("echo muslin: said >&2\n" + text), [], self.folder / "log")
+            self.wait(lambda: work.ended() is not None)
+            self.assertEqual(work.ended(), code)
+            self.assertIn("muslin: said", work.problem())
+            work.interrupt(), work.kill()  # too late, and no harm
+
+    def test_questions_are_asked_in_turn_and_can_be_dropped(self):
+        program = self.script("echo $1; echo e$1 >&2; exit $1")
+        question = worker.Question(program, [["0"], ["3"]])
+        self.wait(question.done)
+        self.assertEqual(question.answers, [(0, "0\n", "e0\n"), (3, "3\n", "e3\n")])
+        question = worker.Question(self.script("exec sleep 60"), [["1"], ["2"]])
+        question.cancel()
+        self.wait(question.done)
+        self.assertLessEqual(len(question.answers), 1)
+        question = worker.Question(str(self.folder / "none"), [[]])
+        self.wait(question.done)
+        self.assertIn("none", question.error)
+
+    def test_the_lock_tells_whether_a_run_is_written(self):
+        (self.folder / "checkpoint").mkdir()
+        self.assertFalse(worker.is_locked(self.folder))
+        lock = self.folder / "checkpoint" / "lock"
+        lock.touch()
+        self.assertFalse(worker.is_locked(self.folder))
+        import fcntl
+        with open(lock, "rb") as held:
+            fcntl.flock(held, fcntl.LOCK_EX)
+            self.assertTrue(worker.is_locked(self.folder))
+            self.assertIsNone(worker.Orphan(self.folder, os.getpid(), "").ended())
+        for status, code in (("finished", 0), ("interrupted", 130), ("failed", 4), ("running", -signal.SIGTERM)):
+            (self.folder / "run.json").write_text(json.dumps({"status": status}))
+            self.assertEqual(worker.Orphan(self.folder, 0, "").ended(), code)
+
+    def test_which_program(self):
+        mine = self.script("exit 0")
+        self.assertEqual(worker.find_program(mine), mine)
+        self.assertEqual(worker.find_program("/nowhere/muslin"), "", "a wrong preference is not passed over")
+        fabrics.program = PROGRAM
+        self.assertIn("cotton", fabrics.names("shell"))
+        self.assertIn("rubber", fabrics.names("lattice"))
+        self.assertTrue(fabrics.description("cotton"))
+
+
+if __name__ == "__main__":
+    unittest.main()
