@@ -2,7 +2,7 @@
 BUILD := build/release
 JOBS ?= $(shell nproc)
 
-.PHONY: build demo test setup setup-tests clean pictures asan tsan fuzz tidy format
+.PHONY: build demo test test-hosts blender-addon setup setup-tests clean pictures asan tsan fuzz tidy format
 .DEFAULT_GOAL := build
 
 setup:            ## installs the Debian packages muslin builds on, if any is missing
@@ -28,6 +28,12 @@ asan tsan:        ## every test under a sanitizer
 	cmake --preset $@
 	cmake --build build/$@ -j $(JOBS)
 	ctest --test-dir build/$@ -j $(JOBS) --output-on-failure
+
+test-hosts: build ## the Blender add-on as an extension of 4.2, USD and Alembic: fetches the bpy module, 520 MB, once
+	tools/test_bpy $(BUILD)/muslin
+
+blender-addon:    ## out/muslin-blender-VERSION.zip, for Blender 3.4 and later
+	blender/package
 
 tidy:             ## clang-tidy over the sources
 	run-clang-tidy -quiet -p $(BUILD) 'src/muslin/.*|apps/.*'

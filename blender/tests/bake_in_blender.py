@@ -142,6 +142,20 @@ class Baking(HostTest):
         self.assertLess(points(obj, 6)[:, 1].min(), -0.01)
         self.assertTrue(any("Vortex" in n.text for n in session().notices))
 
+    def test_a_run_plays_without_the_add_on(self):
+        """docs/guide/blender.md: import the mesh, add a Mesh Cache modifier by hand."""
+        obj = cloth(grid(), pin_group="")
+        bpy.ops.muslin.bake()
+        shown = {f: points(obj, f) for f in (1, 4, 6)}
+        self.assertGreater(np.abs(shown[6] - shown[1]).max(), 0.1)
+        run = self.bake / "run"
+        bpy.ops.wm.obj_import(filepath=str(run / "Cloth.skin.obj"))
+        other = bpy.context.object
+        cache = other.modifiers.new("Cache", "MESH_CACHE")
+        cache.cache_format, cache.filepath, cache.frame_start = "PC2", str(run / "Cloth.skin.pc2"), 1
+        for frame, there in shown.items():
+            self.assertLess(np.abs(points(other, frame) - there).max(), 2e-6)
+
     def test_release_lets_go(self):
         obj = cloth(grid())
         obj.muslin.use_release, obj.muslin.release_frame = True, 3

@@ -219,6 +219,27 @@ class Estimates(Scratch):
         self.assertAlmostEqual(estimate / built, 1, delta=0.2)
 
 
+class Package(Scratch):
+    def test_the_zip_holds_the_add_on_and_is_the_same_each_time(self):
+        import subprocess
+        import sys
+        import zipfile
+        script = pathlib.Path(__file__).parents[1] / "package"
+        made = []
+        for name in ("a", "b"):
+            told = subprocess.run([sys.executable, script, "-o", self.folder / name, "--program", PROGRAM], check=True,
+                                  capture_output=True, text=True)
+            made.append(pathlib.Path(told.stdout.strip()))
+        self.assertRegex(made[0].name, r"^muslin-blender-\d+\.\d+\.\d+\.zip$")
+        self.assertEqual(made[0].read_bytes(), made[1].read_bytes())
+        with zipfile.ZipFile(made[0]) as inside:
+            names = set(inside.namelist())
+            modes = {i.filename: i.external_attr >> 16 & 0o777 for i in inside.infolist()}
+        sources = {f"muslin_cloth/{p.name}" for p in (script.parent / "muslin_cloth").glob("*.py")}
+        self.assertLessEqual(sources | {"muslin_cloth/blender_manifest.toml", "muslin_cloth/LICENSE"}, names)
+        self.assertEqual(modes["muslin_cloth/bin/muslin"], 0o755)
+
+
 class Workers(Scratch):
     def script(self, text):
         path = self.folder / "program"
