@@ -2,7 +2,9 @@
 
 blender --factory-startup --python screenshot_panel.py -- OUT"""
 
+import os
 import pathlib
+import shutil
 import sys
 import tempfile
 import traceback
@@ -157,9 +159,11 @@ def run():
 
 
 def leave(code):
+    folder = pathlib.Path(bpy.data.filepath).parent
     host.module("session").stop_all()
+    if folder.name.startswith("muslin."):
+        shutil.rmtree(folder, ignore_errors=True)
     sys.stdout.flush()
-    import os
     os._exit(code)
 
 
