@@ -90,7 +90,7 @@ def surroundings():
         for polygon in obj.data.polygons:
             polygon.use_smooth = True
     bpy.ops.mesh.primitive_plane_add(size=400)
-    bpy.context.object.data.materials.append(material("Ground", (0.23, 0.25, 0.16), 0.9))
+    bpy.context.object.data.materials.append(material("Ground", (0.10, 0.12, 0.05), 0.9))
 
     world = bpy.data.worlds.new("Sky")
     bpy.context.scene.world = world
@@ -100,11 +100,11 @@ def surroundings():
     sky.sky_type = "NISHITA"
     sky.sun_elevation, sky.sun_rotation = math.radians(32), math.radians(150)
     sky.sun_intensity = 0.35
-    nodes["Background"].inputs["Strength"].default_value = 0.22
+    nodes["Background"].inputs["Strength"].default_value = 0.1
     world.node_tree.links.new(sky.outputs[0], nodes["Background"].inputs[0])
 
-    bpy.ops.object.camera_add(location=(1.15, -4.4, 1.9), rotation=(math.radians(97), 0, math.radians(4)))
-    bpy.context.object.data.lens = 42
+    bpy.ops.object.camera_add(location=(1.05, -4.4, 1.9), rotation=(math.radians(98), 0, math.radians(3)))
+    bpy.context.object.data.lens = 50
     bpy.context.scene.camera = bpy.context.object
 
 
@@ -121,7 +121,7 @@ def main():
         wind("Wind", 5.0, -18)
         bpy.ops.muslin.bake()
         obj.data.materials.append(material("Silk", (0.6, 0.05, 0.05), 0.5, 0.4,
-                                           stripes=((0.02, 0.09, 0.3), (0.85, 0.83, 0.78), (0.62, 0.03, 0.04))))
+                                           stripes=((0.01, 0.07, 0.12), (0.8, 0.74, 0.6), (0.5, 0.08, 0.03))))
         fine = obj.modifiers.new("Subdivision", "SUBSURF")
         fine.levels = fine.render_levels = 2
         surroundings()
@@ -131,6 +131,7 @@ def main():
         scene.cycles.max_bounces = 6
         scene.render.resolution_x, scene.render.resolution_y = 960, 640
         scene.view_settings.view_transform = "Filmic"
+        scene.view_settings.look = "Medium High Contrast"
         scene.render.filepath = out
         scene.frame_set(FRAME)
         bpy.ops.render.render(write_still=True)

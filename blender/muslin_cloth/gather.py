@@ -3,12 +3,13 @@
 import contextlib
 import os
 import pathlib
+import time
 
 import bpy
 import numpy as np
 
 from . import axes, point_cache
-from .advice import ERROR, INFO, WARNING, Notice, counted
+from .advice import ERROR, INFO, WARNING, Notice, counted, suggest_width
 from .playback import modifier_of
 from .scene_text import Cloth, Collider, SceneInput, Wind, body_names, obj_text, scene_toml
 
@@ -259,7 +260,6 @@ def measure(taken):
 
 
 def suggestion(obj, taken):
-    from .advice import suggest_width
     return suggest_width(*measure(taken), obj.muslin.thickness)
 
 
@@ -329,7 +329,6 @@ class Capture:
 
     def step(self, seconds):
         """Samples frames for about so long; True when all are there."""
-        import time
         end = time.monotonic() + seconds
         scene = self.scene()
         with below_the_cloth(cloth_objects(scene)), at_frame(scene, self.frame):

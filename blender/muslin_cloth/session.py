@@ -1,14 +1,14 @@
 """A bake of one Blender scene: carries out what bake_state.transition says, and tells it what happens."""
 
 import json
-import pathlib
 import time
+import traceback
 
 import bpy
 
 from . import bake_state as bs
-from . import fabrics, playback, worker
-from .advice import ERROR, INFO, WARNING, Notice, of_polygons, of_report, problem_line
+from . import playback, worker
+from .advice import ERROR, WARNING, Notice, of_polygons, of_report, problem_line
 from .gather import Capture, Problem, cloth_objects
 from .preferences import find_program, threads
 from .scene_text import scene_toml
@@ -52,6 +52,7 @@ class Session:
         elif worker.run_status(run) == "failed":
             problem = problem_line(worker.read_log(log)) or worker.read_run(run).get("reason", "")
         self.feed(bs.Opened(frame, total, alive, problem if frame >= 0 else ""))
+        self.attach()  # the file may have been saved before the bake was there
 
     def scene(self):
         return bpy.data.scenes.get(self.scene_name)
@@ -117,6 +118,8 @@ class Session:
         return None
 
     def _start_check(self):
+        self._abandon()  # a check without a bake may be in work
+        self._checked_only = False
         self.notices, self.message = [], ""
         try:
             self._begin_check()
@@ -150,12 +153,14 @@ class Session:
         inputs = self.capture.input
         names = {body: name for name, body in self.capture.names.items()}
         parts = [(c.name, c.model) for c in inputs.cloths] + [(c.name, "collider") for c in inputs.colliders]
-        problem = question.error
+        problem, said = question.error, set()
         for (body, model), (code, out, err) in zip(parts, question.answers):
             if code != 0:
                 self.notices.append(Notice(ERROR, in_blender(problem_line(err), names), names[body]))
                 continue
-            self.notices += of_report(json.loads(out), model, names[body])
+            report = json.loads(out)
+            said.update(report["warnings"])
+            self.notices += of_report(report, model, names[body])
             self.notices += of_polygons(self.capture.snapshots[names[body]].sizes, names[body])
         errors = [n for n in self.notices if n.level == ERROR]
         if not errors and len(question.answers) > len(parts):
@@ -163,32 +168,31 @@ class Session:
             if code != 0:
                 problem = problem or in_blender(problem_line(err), names)
             else:
-                self._read_counts(json.loads(out), names)
+                self._read_scene_check(json.loads(out), names, said)
         playback.remove_tree(self.capture.folder / "check")
         if errors:
             problem = f"{errors[0].object}: {errors[0].text}"
         return problem
 
-    def _read_counts(self, answer, names):
+    def _read_scene_check(self, answer, names, said):
+        """Counts and warnings; those `said` of the meshes have been put into Blender's words already."""
         self.counts = {names[b["name"]]: b for b in answer["bodies"] if b["name"] in names}
-        known = {n.text for n in self.notices}
         for warning in answer["warnings"]:
-            body, _, text = warning.removeprefix("body ").partition(": ")
-            text = text or warning
-            # The mesh's own faults were said above in Blender's words.
-            if warning.startswith("body ") and text[:1].isupper() or text in known or text[:1].isdigit():
-                continue
-            self.notices.append(Notice(WARNING, text[:1].upper() + text[1:], names.get(body, "")))
+            body, colon, text = warning.removeprefix("body ").partition(": ")
+            if not warning.startswith("body ") or not colon:
+                body, text = "", warning
+            if text not in said:
+                text = in_blender(text, names)
+                self.notices.append(Notice(WARNING, text[:1].upper() + text[1:], names.get(body, "")))
 
     def check(self):
         """Only looks; bakes nothing."""
-        if self.state.busy or self.question:
+        if self.state.busy:
             return "A bake is in work: cancel it first"
-        self._checked_only = True
         failed = self._start_check()
         if failed is None:
+            self._checked_only = True
             return ""
-        self._checked_only = False
         self._abandon()
         self.notices.append(Notice(ERROR, failed.problem))
         return failed.problem
@@ -313,12 +317,19 @@ class Session:
         self.worker = None
         names = {o["body"]: o["object"] for o in self.playback.description["objects"]}
         self.feed(bs.WorkerEnded(code, frame, in_blender(problem_line(log), names)))
+        mark_changed()
 
     def _has_begun(self):
         """Until then the caches of a run that is gone back on hold frames that will be cut off."""
         if self._sessions_before >= 0 and sessions_of(self.folder / "run") > self._sessions_before:
             self._sessions_before = -1
         return self._sessions_before < 0
+
+    def give_up(self, problem):
+        self.stop()
+        self.worker = None
+        self.state = bs.at_rest(self.state, problem)
+        redraw()
 
     def stop(self):
         """Blender goes, or opens another file: the worker stops too, and can be resumed."""
@@ -378,6 +389,14 @@ def remove_if_empty(folder):
             return
 
 
+def mark_changed():
+    """The modifiers were set behind Blender's back: it should ask to save before it closes."""
+    windows = bpy.context.window_manager.windows
+    if not bpy.app.background and len(windows):
+        with bpy.context.temp_override(window=windows[0]):
+            bpy.ops.ed.undo_push(message="Muslin Bake")
+
+
 def redraw():
     for window in bpy.context.window_manager.windows if bpy.context.window_manager else ():
         for area in window.screen.areas:
@@ -402,7 +421,11 @@ def baking(scene):
 def _tick():
     busy = False
     for session in list(sessions.values()):
-        busy = session.tick() or busy
+        try:
+            busy = session.tick() or busy
+        except Exception:  # a bug must not leave a bake that seems to be in work for ever
+            traceback.print_exc()
+            session.give_up("Internal error: the console says more; please report it")
     return INTERVAL if busy else None
 
 

@@ -335,6 +335,15 @@ class Lifecycle(HostTest):
             for frame, there in shown.items():
                 self.assertLess(np.abs(seen[str(frame)] - there).max(), 1e-6)
 
+    def test_a_file_saved_before_its_bake_plays_it(self):
+        obj = cloth(grid())
+        self.save()
+        bpy.ops.muslin.bake()
+        shown = points(obj, 5)
+        bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)  # without saving
+        self.assertEqual(session().state.phase, self.events().Phase.DONE)
+        np.testing.assert_array_equal(points(bpy.data.objects["Cloth"], 5), shown)
+
     def test_save_as_another_name_plays_the_old_bake_and_makes_its_own(self):
         bs = self.events()
         obj = cloth(grid())

@@ -123,6 +123,7 @@ def done():
     if state.busy:
         return "again"
     assert state.phase.value == "done", state
+    assert bpy.data.is_dirty, "closing asks to save"
     bpy.context.scene.frame_set(60)
     picture("6_done")
 
