@@ -160,7 +160,7 @@ class Properties(unittest.TestCase):
             self.walk(random.Random(seed))
 
     def walk(self, rng):
-        state, activity, frame, origin_ok = State(), None, -1, False
+        state, activity, frame = State(), None, -1
         for _ in range(60):
             if activity and rng.random() < 0.6:
                 event, activity, frame = self.answer(rng, activity, frame, state)
