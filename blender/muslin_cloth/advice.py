@@ -17,7 +17,8 @@ def counted(n, one, many=None):
 
 
 def of_report(report, model, name):
-    """Notices about a mesh from what `muslin check MESH --json` says of it."""
+    """Notices about a mesh from what `muslin check MESH --json` says of it. `model`: "shell", "lattice" or
+    "collider"."""
     notices = []
 
     def say(level, text):
@@ -43,7 +44,7 @@ def of_report(report, model, name):
     if report["flipped_edges"]:
         n = counted(report["flipped_edges"], "edge", "edges")
         say(WARNING, f"Faces disagree about their front side along {n}: Mesh > Normals > Recalculate Outside")
-    if not shell and not report["closed"]:
+    if model == "lattice" and not report["closed"]:
         say(INFO, f"The mesh is open along {counted(report['open_edges'], 'edge')}: it is baked with its thickness")
     if shell and report["closed"]:
         say(INFO, "The mesh is closed: as a shell it is a hollow skin; choose Solid to fill it")
