@@ -38,7 +38,7 @@ def wind(name, speed, degrees):
     field.name = name
     field.rotation_euler = (0, math.pi / 2, math.radians(degrees))  # along x, turned about z
     field.field.strength = speed
-    field.field.noise = 0.25
+    field.field.noise, field.field.seed = 0.25, 3
 
 
 def material(name, colour, roughness, sheen=0.0, stripes=None):
