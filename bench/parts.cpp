@@ -26,7 +26,8 @@ double counted_bytes(const Problem& problem) {
 
 std::map<std::string, double> parts_of_a_step(const Problem& problem) {
   const std::size_t count = problem.masses.size();
-  const StepProblem step = problem.step_problem();
+  StepProblem step = problem.step_problem();
+  step.rest_positions = {};  // iterations without the coarse space
   const StepContext context = step_context(Integrator::implicit_euler, problem.state, problem.dt);
   const IncrementalPotential function(step, context.inertial_prediction, problem.dt);
   const std::vector<Vec3>& x = problem.state.positions;

@@ -30,6 +30,7 @@ Problem body(const ProblemSettings& settings) {
   for (const auto& corners : problem.lattice.voxel_vertices)
     for (const int v : corners) problem.masses[static_cast<std::size_t>(v)] += corner;
   problem.gravity = std::make_shared<test::UniformGravity>(problem.masses, Vec3(0, -9.8, 0));
+  problem.rest_positions = test::rest_positions(problem.lattice);
   problem.fixed.assign(count, 0);
   const Vec3i& e = problem.lattice.extent;
   for (std::size_t v = 0; v < count; ++v) {

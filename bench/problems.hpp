@@ -25,10 +25,13 @@ struct Problem {
   std::vector<std::uint8_t> fixed;
   std::shared_ptr<const SpringEnergy> springs;
   std::shared_ptr<const test::UniformGravity> gravity;
+  std::vector<Vec3> rest_positions;
+  bool coarse_space = true;  ///< whether steps may use it
   State state;
 
   StepProblem step_problem() const {
-    return {masses, {springs.get(), gravity.get()}, fixed, state.positions};
+    return {masses, {springs.get(), gravity.get()}, fixed, state.positions, nullptr,
+            coarse_space ? ConstVectors(rest_positions) : ConstVectors()};
   }
   TextbookProblem textbook() const;
   /// Largest k dt² / m of an edge inside the body.

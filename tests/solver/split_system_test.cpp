@@ -92,6 +92,52 @@ TEST_P(SplitSystemTest, PreconditionsByASymmetricPositiveDefiniteMatrixAndMultip
   }
 }
 
+TEST_P(SplitSystemTest, TakesCorrectionsOfTheResidualIntoItsDirections) {
+  SplitSystem system;
+  system.factor(h_);
+  const CouplingPattern& pattern = h_.sets()[0]->pattern();
+  const std::vector<Vec3> b = free_vectors(1), c = free_vectors(5);
+  std::vector<Vec3> s(b.size()), plain(b.size());
+  system.start(b, 1);
+  system.direction(0, 0);
+  system.solution(1, 1, plain);
+  system.start(b, 1);
+  system.find_product();
+  // The residual comes back from between the halves of the factorisation.
+  const auto place = [](std::size_t i) { return i / 16 * 48 + i % 16; };
+  for (std::size_t v = 0; v < body_; ++v) {
+    const auto i = place(static_cast<std::size_t>(pattern.position(v)));
+    const float* const r = system.product();
+    if (fixed_[v] == 0) {
+      EXPECT_LE((Vec3(r[i], r[i + 16], r[i + 32]) - b[v]).norm(), 1e-4) << v;
+    }
+  }
+  // t = (F Fᵀ)⁻¹ b + c on the body; its quadratic form is that of H.
+  const Floats correction = system.correction();
+  for (std::size_t v = 0; v < body_; ++v) {
+    const auto i = pattern.position(v);
+    correction.x[i] = static_cast<float>(c[v].x()), correction.y[i] = static_cast<float>(c[v].y());
+    correction.z[i] = static_cast<float>(c[v].z());
+  }
+  const double curvature = system.corrected_direction(0, 0);
+  const double by_recurrence = system.residual_and_product(0.2);
+  for (std::size_t v = 0; v < body_; v += 7) {
+    const auto i = place(static_cast<std::size_t>(pattern.position(v)));
+    EXPECT_TRUE(std::isfinite(system.product()[i]));
+  }
+  system.solution(1, 1, s);
+  std::vector<Vec3> expected = plain;
+  for (std::size_t v = 0; v < body_; ++v) expected[v] += c[v];
+  for (std::size_t v = 0; v < b.size(); ++v) EXPECT_LE((s[v] - expected[v]).norm(), 1e-4) << v;
+  const std::vector<Vec3> hs = test::product(h_, expected);
+  const double form = dot(expected, hs);
+  EXPECT_NEAR(curvature, form, 1e-4 * std::abs(form));
+  std::vector<Vec3> rest = b;
+  for (std::size_t v = 0; v < b.size(); ++v)
+    rest[v] = fixed_[v] != 0 ? Vec3(Vec3::Zero()) : Vec3(b[v] - 0.2 * hs[v]);
+  EXPECT_NEAR(by_recurrence, system.start(rest, 1), 1e-4 * std::abs(by_recurrence));
+}
+
 TEST_P(SplitSystemTest, HasTheSameBitsForAnyThreadCount) {
   const std::vector<Vec3> b = free_vectors(1);
   std::vector<std::vector<Vec3>> solutions;
@@ -207,10 +253,20 @@ TEST(SweepKernels, AllHaveTheSameBits) {
     const double rr = kernels->solve_forward(sweep, r);
     const double curvature = kernels->direction(sweep, 0.5F, 0.25F, r, y, p, e, g);
     const double next = kernels->residual(sweep, 0.3F, e, g, r);
+    std::vector<float> other(3 * positions);
+    for (std::size_t i = 0; i < other.size(); ++i)
+      if (identity[i % positions] > 0) other[i] = static_cast<float>(i % 31) - 15.0F;
+    const Floats correction = {other.data(), other.data() + positions, other.data() + 2 * positions};
+    const double corrected = kernels->corrected_direction(sweep, 0.5F, 0.25F, r, y, p, e, g, correction);
+    const double last = kernels->residual_and_product(sweep, 0.1F, e, g, r, correction);
     kernels->solve_backward(sweep, 0.1F, y, p);
-    std::vector<float> result = {stiffest, static_cast<float>(rr), static_cast<float>(curvature),
-                                 static_cast<float>(next)};
-    for (const auto* part : {&pivots, &excess, &flat, &vectors})
+    std::vector<float> result = {stiffest,
+                                 static_cast<float>(rr),
+                                 static_cast<float>(curvature),
+                                 static_cast<float>(next),
+                                 static_cast<float>(corrected),
+                                 static_cast<float>(last)};
+    for (const auto* part : {&pivots, &excess, &flat, &vectors, &other})
       result.insert(result.end(), part->begin(), part->end());
     results.push_back(std::move(result));
   }

@@ -42,6 +42,7 @@ class BlockMatrix {
 
   bool is_of(const std::shared_ptr<const BlockPattern>& pattern) const { return pattern_ == pattern; }
   const BlockPattern& pattern() const { return *pattern_; }
+  const std::shared_ptr<const BlockPattern>& shared_pattern() const { return pattern_; }
   std::size_t first() const { return first_; }
   /// The three columns of a block.
   Float4* block(int index) { return columns_.data() + 3 * static_cast<std::size_t>(index); }

@@ -26,6 +26,7 @@ class Couplings {
   void clear();
 
   const CouplingPattern& pattern() const { return *pattern_; }
+  const std::shared_ptr<const CouplingPattern>& shared_pattern() const { return pattern_; }
   std::size_t first() const { return first_; }
 
   /// s (with √q in it) and t of `count` consecutive blocks, 16 numbers each; zero where a lane has no

@@ -55,6 +55,7 @@ class Linearization {
 
   /// Couplings of all vertices in ascending order, empty ones for vertices that have none.
   std::span<const Couplings* const> sets() const { return sets_; }
+  std::span<const BlockMatrix* const> matrices() const { return matrices_; }
   const float* identity() const { return identity_.data(); }
   const std::uint8_t* fixed() const { return fixed_.data(); }
 

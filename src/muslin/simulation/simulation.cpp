@@ -206,7 +206,7 @@ void Simulation::Parts::advance_by(double length, int halvings) {
   Holds next = holds;
   next.step(model->pins, context.time_begin, context.time_end, before.positions, fixed, targets);
 
-  StepProblem problem{model->masses, {}, fixed, targets, guard.get()};
+  StepProblem problem{model->masses, {}, fixed, targets, guard.get(), model->rest_positions};
   for (const PotentialTerm& term : model->potentials) problem.potentials.push_back(term.potential.get());
   for (const auto& load : loads)
     if (load) problem.potentials.push_back(load.get());

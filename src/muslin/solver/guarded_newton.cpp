@@ -35,6 +35,7 @@ class GuardedStep {
 
   StepReport run() {
     start();
+    workspace_.inner.begin_step();
     StepReport report;
     const bool fast = settings_.effort == Effort::fast;
     const int most = fast ? settings_.fast_iterations : settings_.max_iterations;

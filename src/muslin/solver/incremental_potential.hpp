@@ -59,6 +59,7 @@ class IncrementalPotential {
   std::size_t size() const { return prediction_.size(); }
   ConstVectors prediction() const { return prediction_; }
   double dt() const { return dt_; }
+  ConstVectors rest_positions() const { return problem_.rest_positions; }
 
  private:
   double add_inertia(ConstVectors x, Vectors g) const;

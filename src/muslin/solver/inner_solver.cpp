@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
+
+/// A solve that takes more iterations uses the coarse space. An iteration with it costs three times as much
+/// where the factorisation knows the couplings, hardly more where block matrices are multiplied by.
+constexpr int patience_of_couplings = 40, patience_of_matrices = 6;
 
 double largest_entry(ConstVectors b) {
   struct Largest {
@@ -29,6 +34,23 @@ void InnerSolver::linearize(const IncrementalPotential& function, ConstVectors x
   function.linearize(x, h_);
   stiffest_ = system_.factor(h_);
   projected_ = false;
+  rest_positions_ = function.rest_positions();
+  assembled_ = false;
+}
+
+int InnerSolver::patience() const {
+  return h_.matrices().empty() ? patience_of_couplings : patience_of_matrices;
+}
+
+/// False where there is none.
+bool InnerSolver::prepare_coarse_space() {
+  if (rest_positions_.size() != h_.size()) return false;
+  if (!coarse_space_ || !coarse_space_->fits(h_, rest_positions_))
+    coarse_space_ = std::make_unique<CoarseSpace>(h_, rest_positions_);
+  if (coarse_space_->empty()) return false;
+  if (!assembled_) coarse_space_->assemble(h_);
+  assembled_ = true;
+  return true;
 }
 
 bool InnerSolver::project() {
@@ -58,9 +80,27 @@ LinearReport InnerSolver::solve(ConstVectors b, const LinearSettings& settings, 
   const double stop = settings.tolerance * settings.tolerance * rr;
   norm = scale * std::sqrt(rr);
   if (norm <= settings.enough) return nothing();
-  double alpha = 0, beta = 0;
+  double alpha = 0;
+  double before = 0;  // rᵀP⁻¹r of the iteration before; 0: conjugate to nothing yet
+  bool corrected = false;
+  const auto expected = [&] { return -std::log10(settings.tolerance) * iterations_a_decade_; };
+  const auto observe = [&] {
+    const double decades = std::max(0.5 * std::log10(first / rr), 0.1);
+    if (!corrected && report.iterations > 2) iterations_a_decade_ = report.iterations / decades;
+  };
   while (report.iterations < settings.max_iterations) {
-    const double curvature = system_.direction(alpha, beta);
+    const bool lengthy = report.iterations == 0 ? expected() > patience() : report.iterations == patience();
+    if (!corrected && lengthy && prepare_coarse_space()) {
+      observe();
+      system_.find_product();
+      corrected = true;
+      before = 0;
+    }
+    double rz = rr;
+    if (corrected) rz += coarse_space_->correct(system_.product(), system_.correction());
+    const double beta = before > 0 ? rz / before : 0;
+    const double curvature =
+        corrected ? system_.corrected_direction(alpha, beta) : system_.direction(alpha, beta);
     alpha = 0;
     ++report.iterations;
     // H is of no use here, or its couplings are so far from definite that the factorisation grows without
@@ -76,15 +116,15 @@ LinearReport InnerSolver::solve(ConstVectors b, const LinearSettings& settings, 
       report.negative_curvature = true;
       break;
     }
-    alpha = rr / curvature;
-    const double rr_next = system_.residual(alpha);
-    beta = rr_next / rr;
-    rr = rr_next;
+    alpha = rz / curvature;
+    rr = corrected ? system_.residual_and_product(alpha) : system_.residual(alpha);
+    before = rz;
     if (rr <= stop) {
       report.converged = true;
       break;
     }
   }
+  observe();
   system_.solution(alpha, scale, s);
   report.relative_residual = first > 0 ? std::sqrt(rr / first) : 0;
   return report;

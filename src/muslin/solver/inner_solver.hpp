@@ -1,8 +1,12 @@
 // The linear systems of a step in float: conjugate gradients on the linearised Hessian between the halves of
-// an incomplete factorisation. What float cannot tell is left to the caller's next iteration in double.
+// an incomplete factorisation, and from a coarse grid as well where they take long. What float cannot tell is
+// left to the caller's next iteration in double.
 #pragma once
 
+#include <memory>
+
 #include "muslin/potential/linearization.hpp"
+#include "muslin/solver/coarse_space.hpp"
 #include "muslin/solver/conjugate_gradient.hpp"
 #include "muslin/solver/split_system.hpp"
 
@@ -10,6 +14,8 @@ namespace muslin {
 
 class InnerSolver {
  public:
+  /// Begins a step: what is done depends on nothing before it.
+  void begin_step() { iterations_a_decade_ = 0; }
   /// Linearises at x. x stays valid for as long as `solve` is called.
   void linearize(const IncrementalPotential& function, ConstVectors x);
 
@@ -26,13 +32,22 @@ class InnerSolver {
   /// Replaces H by its projection until the next linearisation; false if it was so already.
   bool project();
 
-  std::size_t bytes() const { return h_.bytes() + system_.bytes(); }
+  std::size_t bytes() const {
+    return h_.bytes() + system_.bytes() + (coarse_space_ ? coarse_space_->bytes() : 0);
+  }
 
  private:
+  bool prepare_coarse_space();
+  int patience() const;
+
   Linearization h_;
   SplitSystem system_;
+  ConstVectors rest_positions_;
+  std::unique_ptr<CoarseSpace> coarse_space_;  // kept from step to step
   double stiffest_ = 0;
   bool projected_ = false;
+  bool assembled_ = false;
+  double iterations_a_decade_ = 0;  // that the residual fell by, without the coarse space, in this step
 };
 
 }  // namespace muslin

@@ -90,6 +90,7 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
   point.value = function.value_and_gradient(x, g);
   point.imbalance = function.imbalance(g);
 
+  inner.begin_step();
   StepReport report;
   double forcing = loosest_forcing;
   for (;;) {

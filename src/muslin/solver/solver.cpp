@@ -88,6 +88,7 @@ LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x,
   const std::size_t count = b.size();
   LinearSettings linear;
   linear.negative_curvature = NegativeCurvature::pass;
+  inner.begin_step();
   inner.linearize(function, x);
   LinearReport report;
   if (inner.stiffest() <= InnerSolver::float_limit) {

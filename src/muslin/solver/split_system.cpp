@@ -173,6 +173,39 @@ double SplitSystem::direction(double alpha, double beta) {
   return h_->has_rest() ? curvature + add_rest_product() : curvature;
 }
 
+double SplitSystem::corrected_direction(double alpha, double beta) {
+  const std::size_t size = vectors_.size() / 5;
+  float* const r = vectors_.data();
+  float *const p = r + size, *const x = p + size, *const e = x + size, *const g = e + size;
+  const double curvature = backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
+    return sweep_kernels::kernels().corrected_direction(
+        sweep, static_cast<float>(alpha), static_cast<float>(beta), r + offset, x + offset, p + offset,
+        e + offset, g + offset, other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
+  });
+  return h_->has_rest() ? curvature + add_rest_product() : curvature;
+}
+
+double SplitSystem::residual_and_product(double alpha) {
+  const std::size_t size = vectors_.size() / 5;
+  float* const r = vectors_.data();
+  float *const e = r + 3 * size, *const g = e + size;
+  return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
+    return sweep_kernels::kernels().residual_and_product(
+        sweep, static_cast<float>(alpha), e + offset, g + offset, r + offset,
+        other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
+  });
+}
+
+void SplitSystem::find_product() {
+  const std::size_t size = vectors_.size() / 5;
+  // As in `start`: lanes without a coupling multiply what is there by zero.
+  other_.resize(flat_.size());
+  for (float* other : {other_.data().x, other_.data().y, other_.data().z})
+    std::memset(other, 0, other_.size() * sizeof(float));
+  std::memset(vectors_.data() + 3 * size, 0, 2 * size * sizeof(float));
+  residual_and_product(0);
+}
+
 /// e += K t; returns tᵀK t.
 double SplitSystem::add_rest_product() {
   t_.resize(h_->size());
@@ -218,7 +251,7 @@ void SplitSystem::solution(double alpha, double scale, Vectors s) {
 
 std::size_t SplitSystem::bytes() const {
   return identity_.bytes() + rest_.bytes() + pivots_.bytes() + excess_.bytes() + flat_.bytes() +
-         free_.capacity() * sizeof(free_[0]) + t_.bytes() + product_.bytes();
+         other_.bytes() + free_.capacity() * sizeof(free_[0]) + t_.bytes() + product_.bytes();
 }
 
 }  // namespace muslin

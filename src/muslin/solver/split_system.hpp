@@ -37,6 +37,17 @@ class SplitSystem {
   double direction(double alpha, double beta);
   /// r̂ −= alpha Ĥp̂; returns r̂ᵀr̂.
   double residual(double alpha);
+
+  /// For another preconditioner, P⁻¹ = (F Fᵀ)⁻¹ + C. `residual`, and then r = F r̂ for C: in groups of 16 x, y
+  /// and z by position, valid until the next direction.
+  double residual_and_product(double alpha);
+  const float* product() const { return vectors_.data() + 3 * (vectors_.size() / 5); }
+  /// C r, by position, to be written before the next `corrected_direction`: p̂ = r̂ + Fᵀ C r + beta p̂.
+  Floats correction() const { return other_.data(); }
+  double corrected_direction(double alpha, double beta);
+  /// r = F r̂ after `start` or `residual`.
+  void find_product();
+
   /// s = scale · F⁻ᵀ (x̂ + alpha p̂), #V by 3.
   void solution(double alpha, double scale, Vectors s);
 
@@ -64,6 +75,7 @@ class SplitSystem {
   std::vector<std::uint16_t> free_;
   std::span<float> vectors_;  // r̂, p̂, x̂, e, g by group; memory of h_
   FloatVectors flat_;
+  FloatVectors other_;        // beside flat_, for corrections
   FloatVectors t_, product_;  // t and K t by vertex
 };
 

@@ -48,6 +48,12 @@ struct Kernels {
   double (*residual)(const Sweep& sweep, float alpha, const float* e, const float* g, float* r);
   /// flat = F⁻ᵀ (x + alpha p).
   void (*solve_backward)(const Sweep& sweep, float alpha, const float* x, const float* p);
+  /// As `residual`, and then e = F r; `other` is room by position, which receives Mᵀ r.
+  double (*residual_and_product)(const Sweep& sweep, float alpha, float* e, const float* g, float* r,
+                                 Floats other);
+  /// As `direction` with p = r + Fᵀ c + beta p, c = `correction` by position.
+  double (*corrected_direction)(const Sweep& sweep, float alpha, float beta, const float* r, float* x,
+                                float* p, float* e, float* g, Floats correction);
 };
 
 /// The best for this processor.

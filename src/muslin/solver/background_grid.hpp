@@ -1,0 +1,122 @@
+// A coarse grid behind scattered points: values at its nodes, trilinearly at the points.
+//
+// Points belong to components, which share no nodes. The axes along which a component is thinner than half a
+// cell have a single node; along the others every occupied cell has two.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/potential/block_matrix.hpp"
+
+namespace muslin {
+
+class BackgroundGrid {
+ public:
+  /// 1, 2, 4 or 8 nodes; bit a of the number of a node in the cell: at the upper end of axis a of those with
+  /// two nodes.
+  struct Cell {
+    int count = 1;
+    std::array<int, 8> nodes{};
+    std::array<int, 3> index{};  ///< along the axes with two nodes
+    std::array<int, 8> lower{};  ///< one lower along the axes of the bits of this; −1 if there is none
+  };
+  /// cell −1: the point takes no part. `t` by axis with two nodes, in units of 1/32768.
+  struct Point {
+    int cell = -1;
+    std::array<std::uint16_t, 3> t{};
+  };
+
+  BackgroundGrid() = default;
+  /// `points` #P by 3; `components` #P, −1 for points that take no part; `spacings` by component.
+  BackgroundGrid(ConstVectors points, std::span<const int> components, std::span<const double> spacings);
+
+  std::size_t node_count() const { return nodes_.size(); }
+  const std::vector<Vec3>& nodes() const { return nodes_; }
+  const std::vector<int>& node_components() const { return node_components_; }
+  const std::vector<Cell>& cells() const { return cells_; }
+  const Point& point(std::size_t p) const { return points_[p]; }
+
+  /// Weights of the nodes of the point's cell, which must be one; returns the cell.
+  const Cell& weights(const Point& point, float (&w)[8]) const {
+    const Cell& cell = cells_[static_cast<std::size_t>(point.cell)];
+    w[0] = 1;
+    std::size_t axis = 0;
+    for (int n = 1; n < cell.count; n *= 2, ++axis) {
+      const float t = static_cast<float>(point.t[axis]) * (1.0F / one);
+      for (int k = 0; k < n; ++k) {
+        w[n + k] = t * w[k];
+        w[k] -= w[n + k];
+      }
+    }
+    return cell;
+  }
+
+  /// Says the same of both points in terms of one cell, where they lie in or on the border of one.
+  bool meet(Point& a, Point& b) const;
+
+  std::size_t bytes() const {
+    return points_.capacity() * sizeof(Point) + cells_.capacity() * sizeof(Cell) +
+           nodes_.capacity() * sizeof(Vec3) + node_components_.capacity() * sizeof(int);
+  }
+
+ private:
+  static constexpr float one = 32768;
+
+  std::vector<Point> points_;
+  std::vector<Cell> cells_;
+  std::vector<Vec3> nodes_;
+  std::vector<int> node_components_;
+};
+
+/// Which blocks a matrix between the nodes of a grid has, where they are, and how to add to them. Adding half
+/// of a symmetric matrix is enough: `finish` adds its transpose.
+class GridMatrix {
+ public:
+  GridMatrix() = default;
+  /// `neighbours`: pairs of cells whose points are coupled, in any order and number; equal ones need not be
+  /// named.
+  GridMatrix(const BackgroundGrid& grid, std::vector<std::pair<int, int>> neighbours);
+
+  const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
+
+  /// Blocks of the nodes of cell a (rows, eight each) with those of cell b.
+  using Table = std::array<int, 64>;
+  const Table& table(int a) const { return tables_[static_cast<std::size_t>(a)]; }
+  const Table& table(int a, int b) const;
+
+  /// to = half + halfᵀ
+  void finish(const Float4* half, BlockMatrix& to) const;
+  std::size_t bytes() const;
+
+ private:
+  struct Neighbour {
+    int cell, table;
+  };
+  std::shared_ptr<const BlockPattern> pattern_;
+  std::vector<Table> tables_;  // of each cell with itself, then of neighbours
+  std::vector<int> first_;     // by cell: its neighbours
+  std::vector<Neighbour> neighbours_;
+  std::vector<int> mirror_;  // by block: its transpose
+};
+
+/// A 3×3 block as BlockMatrix stores it.
+struct Block3 {
+  Float4 x, y, z;
+};
+/// half += Σ w B of nodes k ≤ l of a cell; w by k and l in the order (0,0), (0,1), …, (1,1), …
+void add_weighted(const BackgroundGrid& grid, const GridMatrix& matrix, int cell, const float* w,
+                  const Block3& block, Float4* half);
+/// half += Pᵀ B P of one block at a point, of one between two points, of a coupling.
+void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& at,
+               const Block3& block, Float4* half);
+void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& row,
+               const BackgroundGrid::Point& column, const Block3& block, Float4* half);
+void add_coupling(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& a,
+                  const BackgroundGrid::Point& b, const Block3& block, Float4* half);
+
+}  // namespace muslin

@@ -1,0 +1,385 @@
+#include "muslin/solver/coarse_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "muslin/core/parallel.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr int lanes = CouplingPattern::lanes;
+// The factorisation of couplings leaves smoother errors than that of diagonal blocks.
+constexpr double edges_per_cell = 8, edges_per_cell_of_matrices = 4;
+constexpr int smallest_component = 64;          // vertices
+constexpr std::size_t smallest_part = 1 << 16;  // positions
+constexpr std::size_t most_parts = 4;
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// Which vertices belong together.
+class Components {
+ public:
+  explicit Components(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int v) {
+    while (parent_[at(v)] != v) v = parent_[at(v)] = parent_[at(parent_[at(v)])];
+    return v;
+  }
+  void join(int u, int v) {
+    u = find(u), v = find(v);
+    parent_[at(std::max(u, v))] = std::min(u, v);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// body(earlier, later) for the positions of every coupling.
+template <class Body>
+void for_each_coupling(const CouplingPattern& pattern, const Body& body) {
+  for (const CouplingPattern::Block& block : pattern.blocks()) {
+    for (int l = 0; l < lanes; ++l)
+      if (block.used >> l & 1)
+        body(l + (l < block.cut ? block.first : block.second), block.group * lanes + l);
+  }
+}
+/// body(row, column) for the blocks below the diagonal.
+template <class Body>
+void for_each_pair(const BlockPattern& pattern, const Body& body) {
+  for (std::size_t row = 0; row < pattern.vertex_count(); ++row) {
+    for (int k = pattern.first()[row]; k < pattern.first()[row + 1]; ++k)
+      if (pattern.columns()[at(k)] < static_cast<int>(row))
+        body(static_cast<int>(row), pattern.columns()[at(k)]);
+  }
+}
+
+}  // namespace
+
+CoarseSpace::CoarseSpace(const Linearization& h, ConstVectors rest_positions)
+    : rest_positions_(rest_positions.data()), vertex_count_(rest_positions.size()) {
+  std::size_t positions = 0, blocks = 0;
+  position_.resize(vertex_count_);
+  std::vector<int> vertex;  // by position
+  for (const Couplings* set : h.sets()) {
+    sets_.push_back({set->shared_pattern(), set->first(), positions, blocks});
+    blocks += set->pattern().block_count();
+    for (std::size_t i = 0; i < set->pattern().position_count(); ++i) {
+      const int v = set->pattern().vertex(i);
+      vertex.push_back(v < 0 ? -1 : static_cast<int>(set->first()) + v);
+      if (v >= 0) position_[set->first() + at(v)] = static_cast<int>(positions + i);
+    }
+    positions += set->pattern().position_count();
+  }
+  for (const BlockMatrix* matrix : h.matrices())
+    matrices_.push_back({matrix->shared_pattern(), matrix->first()});
+
+  // Bodies and the lengths of their edges.
+  const auto for_each_edge = [&](const auto& body) {
+    for (const Set& set : sets_)
+      for_each_coupling(*set.pattern,
+                        [&](int i, int j) { body(vertex[set.begin + at(i)], vertex[set.begin + at(j)]); });
+    for (const Matrix& matrix : matrices_) {
+      const int first = static_cast<int>(matrix.first);
+      for_each_pair(*matrix.pattern, [&](int u, int v) { body(first + u, first + v); });
+    }
+  };
+  Components sets(vertex_count_);
+  std::vector<float> shortest(vertex_count_, std::numeric_limits<float>::infinity());
+  for_each_edge([&](int u, int v) {
+    sets.join(u, v);
+    const auto length = static_cast<float>((rest_positions[at(u)] - rest_positions[at(v)]).norm());
+    shortest[at(u)] = std::min(shortest[at(u)], length);
+    shortest[at(v)] = std::min(shortest[at(v)], length);
+  });
+  std::vector<int> size(vertex_count_, 0), number(vertex_count_, -1);
+  for (std::size_t v = 0; v < vertex_count_; ++v) ++size[at(sets.find(static_cast<int>(v)))];
+  std::vector<double> spacings;
+  std::vector<int> counts;
+  std::vector<int> component(vertex_count_, -1);
+  for (std::size_t v = 0; v < vertex_count_; ++v) {
+    const std::size_t root = at(sets.find(static_cast<int>(v)));
+    if (size[root] < smallest_component) continue;
+    if (number[root] < 0) {
+      number[root] = static_cast<int>(spacings.size());
+      spacings.push_back(0);
+      counts.push_back(0);
+    }
+    component[v] = number[root];
+    spacings[at(number[root])] += static_cast<double>(shortest[v]);
+    ++counts[at(number[root])];
+  }
+  std::vector<double> edges(spacings.size(), edges_per_cell);
+  for (const Matrix& matrix : matrices_) {
+    for (std::size_t v = 0; v < matrix.pattern->vertex_count(); ++v)
+      if (const int c = component[matrix.first + v]; c >= 0) edges[at(c)] = edges_per_cell_of_matrices;
+  }
+  for (std::size_t c = 0; c < spacings.size(); ++c) spacings[c] *= edges[c] / counts[c];
+  // Without a length there is no grid.
+  for (int& c : component)
+    if (c >= 0 && !(spacings[at(c)] > 0 && std::isfinite(spacings[at(c)]))) c = -1;
+
+  std::vector<Vec3> points(positions, Vec3::Zero());
+  std::vector<int> components(positions, -1);
+  for (std::size_t i = 0; i < positions; ++i) {
+    if (vertex[i] < 0) continue;
+    points[i] = rest_positions[at(vertex[i])];
+    components[i] = component[at(vertex[i])];
+  }
+  grid_ = BackgroundGrid(points, components, spacings);
+  if (grid_.node_count() == 0) return;
+  std::vector<std::pair<int, int>> neighbours;
+  const auto add = [&](std::size_t i, std::size_t j) {
+    const int a = grid_.point(i).cell, b = grid_.point(j).cell;
+    if (a == b || a < 0 || b < 0 || (!neighbours.empty() && neighbours.back() == std::pair(a, b))) return;
+    neighbours.emplace_back(a, b);
+  };
+  for (const Set& set : sets_)
+    for_each_coupling(*set.pattern, [&](int i, int j) { add(set.begin + at(i), set.begin + at(j)); });
+  for (const Matrix& matrix : matrices_) {
+    for_each_pair(*matrix.pattern, [&](int u, int v) {
+      add(at(position_[matrix.first + at(u)]), at(position_[matrix.first + at(v)]));
+    });
+  }
+  grid_matrix_ = GridMatrix(grid_, std::move(neighbours));
+  held_.assign(positions, 0);
+  bundle_.resize(lanes * blocks);
+  bundle();
+  const std::size_t parts = std::clamp<std::size_t>(positions / smallest_part, 1, most_parts);
+  sums_.resize(parts);
+  for (Sums& sums : sums_) {
+    sums.half.resize(3 * grid_matrix_.pattern()->block_count());
+    sums.right_side.resize(grid_.node_count());
+    sums.masses.resize(grid_.cells().size());
+  }
+  for (double& spacing : spacings) spacing *= 2;
+  multilevel_ = std::make_unique<Multilevel>(grid_matrix_.pattern(), grid_.nodes(), grid_.node_components(),
+                                             std::move(spacings));
+}
+
+bool CoarseSpace::fits(const Linearization& h, ConstVectors rest_positions) const {
+  const auto same = [](const auto& kept, const auto* now) {
+    return kept.pattern == now->shared_pattern() && kept.first == now->first();
+  };
+  return rest_positions.data() == rest_positions_ && rest_positions.size() == vertex_count_ &&
+         std::equal(sets_.begin(), sets_.end(), h.sets().begin(), h.sets().end(), same) &&
+         std::equal(matrices_.begin(), matrices_.end(), h.matrices().begin(), h.matrices().end(), same);
+}
+
+/// Which couplings go together: anew whenever other vertices are held.
+void CoarseSpace::bundle() {
+  const auto add_square = [](int count, const float* w, Bundle& bundle) {
+    std::size_t i = 0;
+    for (int k = 0; k < count; ++k)
+      for (int l = k; l < count; ++l) bundle.weights[i++] += w[k] * w[l];
+    ++bundle.count;
+  };
+  const auto finish = [](std::vector<Bundle>& bundles) {
+    for (Bundle& bundle : bundles)
+      for (float& w : bundle.weights) w /= std::max(bundle.count, 1.0F);
+  };
+  int kinds = 0;
+  for (const Set& set : sets_)
+    for (const CouplingPattern::Block& block : set.pattern->blocks()) kinds = std::max(kinds, block.kind + 1);
+  std::vector<int> number(grid_.cells().size() * at(kinds), -1);
+  std::fill(bundle_.begin(), bundle_.end(), -1);
+  bundles_.clear();
+  for (const Set& set : sets_) {
+    for (std::size_t b = 0; b < set.pattern->block_count(); ++b) {
+      const CouplingPattern::Block& block = set.pattern->blocks()[b];
+      for (int l = 0; l < lanes; ++l) {
+        if ((block.used >> l & 1) == 0) continue;
+        BackgroundGrid::Point p = point(set.begin + at(l + (l < block.cut ? block.first : block.second))),
+                              q = point(set.begin + at(block.group * lanes + l));
+        if (!grid_.meet(p, q)) continue;
+        int& n = number[at(p.cell) * at(kinds) + at(block.kind)];
+        if (n < 0) {
+          n = static_cast<int>(bundles_.size());
+          bundles_.emplace_back().cell = p.cell;
+        }
+        float w[8], v[8];
+        const BackgroundGrid::Cell& cell = grid_.weights(p, w);
+        grid_.weights(q, v);
+        for (int k = 0; k < cell.count; ++k) w[k] -= v[k];
+        add_square(cell.count, w, bundles_[at(n)]);
+        bundle_[(set.first_block + b) * lanes + at(l)] = n;
+      }
+    }
+  }
+  mass_bundles_.assign(grid_.cells().size(), Bundle{});
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    const BackgroundGrid::Point p = point(i);
+    if (p.cell < 0) continue;
+    float w[8];
+    const BackgroundGrid::Cell& cell = grid_.weights(p, w);
+    mass_bundles_[at(p.cell)].cell = p.cell;
+    add_square(cell.count, w, mass_bundles_[at(p.cell)]);
+  }
+  finish(bundles_);
+  finish(mass_bundles_);
+}
+
+void CoarseSpace::add_couplings(const Couplings& couplings, const Set& set, std::size_t part,
+                                Sums& sums) const {
+  constexpr std::size_t batch = 16;
+  float sx[batch * lanes], sy[batch * lanes], sz[batch * lanes], t[batch * lanes];
+  const CouplingPattern& pattern = couplings.pattern();
+  const auto [begin, end] = share(part, pattern.block_count());
+  for (std::size_t b = begin; b < end; b += batch) {
+    const std::size_t count = std::min(batch, end - b);
+    couplings.load(b, count, sx, sy, sz, t);
+    for (std::size_t k = 0; k < count; ++k) {
+      const CouplingPattern::Block& block = pattern.blocks()[b + k];
+      const int* const bundle = bundle_.data() + (set.first_block + b + k) * lanes;
+      for (int l = 0; l < lanes; ++l) {
+        if ((block.used >> l & 1) == 0) continue;
+        const std::size_t i = k * lanes + at(l);
+        const float plus = std::max(t[i], 0.0F);
+        const Float4 s = {sx[i], sy[i], sz[i], 0};
+        const Block3 matrix = {s * sx[i] + Float4{plus, 0, 0, 0}, s * sy[i] + Float4{0, plus, 0, 0},
+                               s * sz[i] + Float4{0, 0, plus, 0}};
+        if (bundle[l] >= 0) {
+          Block3& sum = sums.couplings[at(bundle[l])];
+          sum.x += matrix.x, sum.y += matrix.y, sum.z += matrix.z;
+        } else {
+          add_coupling(grid_, grid_matrix_,
+                       point(set.begin + at(l + (l < block.cut ? block.first : block.second))),
+                       point(set.begin + at(block.group * lanes + l)), matrix, sums.half.data());
+        }
+      }
+    }
+  }
+}
+
+void CoarseSpace::add_masses(const Linearization& h, std::size_t part, Sums& sums) const {
+  const auto [begin, end] = share(part, vertex_count_);
+  for (std::size_t v = begin; v < end; ++v) {
+    const BackgroundGrid::Point p = point(at(position_[v]));
+    if (p.cell >= 0) sums.masses[at(p.cell)] += h.identity()[v];
+  }
+}
+
+/// The blocks below the diagonal: the others are their transposes or in the diagonal of all.
+void CoarseSpace::add_matrix(const BlockMatrix& matrix, std::size_t part, Float4* half) const {
+  const BlockPattern& pattern = matrix.pattern();
+  const auto [begin, end] = share(part, pattern.vertex_count());
+  for (std::size_t row = begin; row < end; ++row) {
+    const BackgroundGrid::Point at_row = point(at(position_[matrix.first() + row]));
+    for (int k = pattern.first()[row]; k < pattern.first()[row + 1]; ++k) {
+      const auto column = at(pattern.columns()[at(k)]);
+      if (column >= row) break;
+      const Float4* const a = matrix.block(k);
+      add_block(grid_, grid_matrix_, at_row, point(at(position_[matrix.first() + column])),
+                {a[0], a[1], a[2]}, half);
+    }
+  }
+}
+
+void CoarseSpace::add_rest_diagonal(const Linearization& h, std::size_t part, Float4* half) const {
+  const Floats u = h.rest_upper().data(), l = h.rest_lower().data();
+  const auto [begin, end] = share(part, vertex_count_);
+  for (std::size_t v = begin; v < end; ++v) {
+    const Block3 block = {
+        {u.x[v], u.y[v], u.z[v], 0}, {u.y[v], l.x[v], l.y[v], 0}, {u.z[v], l.y[v], l.z[v], 0}};
+    add_block(grid_, grid_matrix_, point(at(position_[v])), block, half);
+  }
+}
+
+void CoarseSpace::assemble(const Linearization& h) {
+  bool same = true;
+  for (std::size_t v = 0; v < vertex_count_; ++v) {
+    std::uint8_t& held = held_[at(position_[v])];
+    same = same && held == h.fixed()[v];
+    held = h.fixed()[v];
+  }
+  if (!same) bundle();
+  parallel_for(sums_.size(), 1, [&](std::size_t part, std::size_t) {
+    Sums& sums = sums_[part];
+    std::fill(sums.half.begin(), sums.half.end(), Float4{0, 0, 0, 0});
+    std::fill(sums.masses.begin(), sums.masses.end(), 0.0F);
+    sums.couplings.assign(bundles_.size(), Block3{});
+    for (std::size_t s = 0; s < sets_.size(); ++s) add_couplings(*h.sets()[s], sets_[s], part, sums);
+    add_masses(h, part, sums);
+    for (const BlockMatrix* matrix : h.matrices()) add_matrix(*matrix, part, sums.half.data());
+    if (h.has_rest()) add_rest_diagonal(h, part, sums.half.data());
+  });
+  Sums& all = sums_[0];
+  for (std::size_t part = 1; part < sums_.size(); ++part) {
+    const Sums& sums = sums_[part];
+    for (std::size_t i = 0; i < all.half.size(); ++i) all.half[i] += sums.half[i];
+    for (std::size_t i = 0; i < all.masses.size(); ++i) all.masses[i] += sums.masses[i];
+    for (std::size_t i = 0; i < all.couplings.size(); ++i) {
+      Block3& sum = all.couplings[i];
+      sum.x += sums.couplings[i].x, sum.y += sums.couplings[i].y, sum.z += sums.couplings[i].z;
+    }
+  }
+  for (std::size_t n = 0; n < bundles_.size(); ++n) {
+    const Bundle& bundle = bundles_[n];
+    add_weighted(grid_, grid_matrix_, bundle.cell, bundle.weights.data(), all.couplings[n], all.half.data());
+  }
+  for (std::size_t c = 0; c < mass_bundles_.size(); ++c) {
+    const float m = all.masses[c];
+    add_weighted(grid_, grid_matrix_, static_cast<int>(c), mass_bundles_[c].weights.data(),
+                 Block3{{m, 0, 0, 0}, {0, m, 0, 0}, {0, 0, m, 0}}, all.half.data());
+  }
+  multilevel_->matrix().reset(grid_matrix_.pattern(), 0);
+  grid_matrix_.finish(all.half.data(), multilevel_->matrix());
+  multilevel_->prepare();
+}
+
+double CoarseSpace::correct(const float* r, Floats t) {
+  const std::size_t positions = held_.size();
+  parallel_for(sums_.size(), 1, [&](std::size_t part, std::size_t) {
+    std::vector<Float4>& sum = sums_[part].right_side;
+    std::fill(sum.begin(), sum.end(), Float4{0, 0, 0, 0});
+    const auto [begin, end] = share(part, positions);
+    for (std::size_t i = begin; i < end; ++i) {
+      const BackgroundGrid::Point p = point(i);
+      if (p.cell < 0) continue;
+      const float* const from = r + i / lanes * (3 * lanes) + i % lanes;
+      const Float4 value = {from[0], from[lanes], from[2 * lanes], 0};
+      float w[8];
+      const BackgroundGrid::Cell& cell = grid_.weights(p, w);
+      for (int k = 0; k < cell.count; ++k) sum[at(cell.nodes[at(k)])] += w[k] * value;
+    }
+  });
+  std::vector<Float4>& b = multilevel_->right_side();
+  b = sums_[0].right_side;
+  for (std::size_t part = 1; part < sums_.size(); ++part)
+    for (std::size_t n = 0; n < b.size(); ++n) b[n] += sums_[part].right_side[n];
+  const std::vector<Float4> right_side = b;
+  multilevel_->solve();
+  const std::vector<Float4>& x = multilevel_->solution();
+  double product = 0;
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    for (int c = 0; c < 3; ++c)
+      product += static_cast<double>(x[n][c]) * static_cast<double>(right_side[n][c]);
+  }
+  parallel_for(positions, 8192, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const BackgroundGrid::Point p = point(i);
+      Float4 value = {0, 0, 0, 0};
+      if (p.cell >= 0) {
+        float w[8];
+        const BackgroundGrid::Cell& cell = grid_.weights(p, w);
+        for (int k = 0; k < cell.count; ++k) value += w[k] * x[at(cell.nodes[at(k)])];
+      }
+      t.x[i] = value[0], t.y[i] = value[1], t.z[i] = value[2];
+    }
+  });
+  return product;
+}
+
+std::size_t CoarseSpace::bytes() const {
+  std::size_t bytes = grid_.bytes() + grid_matrix_.bytes() + position_.capacity() * sizeof(int) +
+                      held_.capacity() + bundle_.capacity() * sizeof(int) +
+                      (bundles_.capacity() + mass_bundles_.capacity()) * sizeof(Bundle);
+  for (const Sums& sums : sums_) {
+    bytes += (sums.half.capacity() + sums.right_side.capacity()) * sizeof(Float4) +
+             sums.couplings.capacity() * sizeof(Block3) + sums.masses.capacity() * sizeof(float);
+  }
+  return bytes + (multilevel_ ? multilevel_->bytes() : 0);
+}
+
+}  // namespace muslin

@@ -1,0 +1,91 @@
+// Smooth motions, for which conjugate gradients alone take longer the finer a body is: corrections that are
+// interpolated from a coarse grid behind the rest positions,
+//
+//   t = Z B Zᵀ r,   B ≈ (Zᵀ H⁺ Z)⁻¹ by multigrid (Multilevel),
+//
+// H⁺ the Hessian without the negative t of its couplings, Z trilinear with a spacing of eight edges (of four
+// where block matrices couple the vertices). Couplings of one direction within one cell are summed first and
+// get the mean of their weights: Σ δᵢδᵢᵀ ⊗ Bᵢ ≈ (Σ δᵢδᵢᵀ) ⊗ (Σ Bᵢ) / n, exact where they are equal and
+// positive semidefinite always. Bodies are told apart by what couples their vertices; small ones take no
+// part. Of potentials that are neither couplings nor block matrices H⁺ has the diagonal blocks.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "muslin/potential/linearization.hpp"
+#include "muslin/solver/multilevel.hpp"
+
+namespace muslin {
+
+class CoarseSpace {
+ public:
+  /// For linearisations with the patterns of this one; `rest_positions` #V by 3 [m].
+  CoarseSpace(const Linearization& h, ConstVectors rest_positions);
+  bool fits(const Linearization& h, ConstVectors rest_positions) const;
+  /// Whether there is anything to correct.
+  bool empty() const { return multilevel_ == nullptr; }
+
+  /// Makes Zᵀ H⁺ Z.
+  void assemble(const Linearization& h);
+  /// t = Z B Zᵀ r, zero on held vertices; returns rᵀt. Both by position in the order of elimination, the sets
+  /// of couplings one after the other; r in groups of 16 x, 16 y and 16 z.
+  double correct(const float* r, Floats t);
+
+  std::size_t bytes() const;
+
+ private:
+  struct Set {
+    std::shared_ptr<const CouplingPattern> pattern;
+    std::size_t first = 0;  // vertex
+    std::size_t begin = 0;  // position
+    std::size_t first_block = 0;
+  };
+  struct Matrix {
+    std::shared_ptr<const BlockPattern> pattern;
+    std::size_t first = 0;
+  };
+  /// Of a loop over `count` items, what a part does: its items from `begin` to `end`.
+  struct Share {
+    std::size_t begin, end;
+  };
+  Share share(std::size_t part, std::size_t count) const {
+    return {count * part / sums_.size(), count * (part + 1) / sums_.size()};
+  }
+  BackgroundGrid::Point point(std::size_t position) const {
+    return held_[position] != 0 ? BackgroundGrid::Point{} : grid_.point(position);
+  }
+  /// Couplings of one kind in one cell: the sum over them of δ_k δ_l (k ≤ l, as add_weighted has them),
+  /// divided by their number. The masses of a cell's vertices likewise.
+  struct Bundle {
+    int cell = 0;
+    float count = 0;
+    std::array<float, 36> weights{};
+  };
+  /// What the parts of a sum have in common room for.
+  struct Sums {
+    std::vector<Float4> half, right_side;
+    std::vector<Block3> couplings;  // by bundle
+    std::vector<float> masses;      // by cell
+  };
+  void bundle();
+  void add_couplings(const Couplings& couplings, const Set& set, std::size_t part, Sums& sums) const;
+  void add_masses(const Linearization& h, std::size_t part, Sums& sums) const;
+  void add_matrix(const BlockMatrix& matrix, std::size_t part, Float4* half) const;
+  void add_rest_diagonal(const Linearization& h, std::size_t part, Float4* half) const;
+
+  std::vector<Set> sets_;
+  std::vector<Matrix> matrices_;
+  const Vec3* rest_positions_ = nullptr;
+  std::size_t vertex_count_ = 0;
+  std::vector<int> position_;  // by vertex
+  BackgroundGrid grid_;        // points by position
+  GridMatrix grid_matrix_;
+  std::vector<std::uint8_t> held_;              // by position
+  std::vector<int> bundle_;                     // by block of couplings and lane; −1: by itself
+  std::vector<Bundle> bundles_, mass_bundles_;  // the latter by cell
+  std::vector<Sums> sums_;                      // by part
+  std::unique_ptr<Multilevel> multilevel_;
+};
+
+}  // namespace muslin

@@ -1,0 +1,191 @@
+#include "muslin/solver/multilevel.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/LU>
+
+namespace muslin {
+namespace {
+
+constexpr std::size_t direct_limit = 48;  // nodes of the coarsest level
+constexpr int sweeps_without = 8;         // there, where it has more
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+Float4 operator*(const Block3& b, const Float4& v) { return b.x * v[0] + b.y * v[1] + b.z * v[2]; }
+
+/// b − A x in a row, without the diagonal block.
+Float4 rest_of_row(const BlockPattern& pattern, const BlockMatrix& matrix, std::size_t row, const Float4& b,
+                   const Float4* x) {
+  Float4 sum = b, further = {0, 0, 0, 0};
+  for (int k = pattern.first()[row]; k < pattern.first()[row + 1]; ++k) {
+    const auto column = at(pattern.columns()[at(k)]);
+    if (column == row) continue;
+    const Float4* const a = matrix.block(k);
+    const Float4& v = x[column];
+    sum -= a[0] * v[0] + a[1] * v[1];
+    further -= a[2] * v[2];
+  }
+  return sum + further;
+}
+
+/// Zero for the block of a node whose points are all held.
+Block3 inverse(const Float4* a) {
+  if (!(a[0][0] > 0)) return Block3{};
+  Mat3 m;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) m(r, c) = static_cast<double>(a[c][r]);
+  const Mat3 n = m.inverse();
+  const auto column = [&](int c) {
+    return Float4{static_cast<float>(n(0, c)), static_cast<float>(n(1, c)), static_cast<float>(n(2, c)), 0};
+  };
+  return {column(0), column(1), column(2)};
+}
+
+}  // namespace
+
+Multilevel::Multilevel(std::shared_ptr<const BlockPattern> pattern, ConstVectors points,
+                       std::span<const int> components, std::vector<double> spacings) {
+  std::vector<Vec3> x(points.begin(), points.end());
+  std::vector<int> parts(components.begin(), components.end());
+  for (;;) {
+    Level& level = levels_.emplace_back();
+    level.pattern = std::move(pattern);
+    const std::size_t count = x.size();
+    level.inverse.resize(count);
+    level.b.resize(count), level.x.resize(count);
+    has_direct_ = count <= direct_limit;
+    if (has_direct_) return;
+    level.grid = BackgroundGrid(x, parts, spacings);
+    if (4 * level.grid.node_count() > 3 * count) {  // as coarse as it gets
+      level.grid = {};
+      return;
+    }
+    std::vector<std::pair<int, int>> neighbours;
+    for (std::size_t row = 0; row < count; ++row) {
+      for (int k = level.pattern->first()[row]; k < level.pattern->first()[row + 1]; ++k) {
+        const auto column = at(level.pattern->columns()[at(k)]);
+        if (column < row) neighbours.emplace_back(level.grid.point(row).cell, level.grid.point(column).cell);
+      }
+    }
+    level.coarser = GridMatrix(level.grid, std::move(neighbours));
+    level.half.resize(3 * level.coarser.pattern()->block_count());
+    pattern = level.coarser.pattern();
+    x = level.grid.nodes();
+    parts = level.grid.node_components();
+    for (double& spacing : spacings) spacing *= 2;
+  }
+}
+
+void Multilevel::prepare() {
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    for (std::size_t i = 0; i < level.inverse.size(); ++i) {
+      const int row = static_cast<int>(i);
+      level.inverse[i] = inverse(level.matrix.block(level.pattern->find(row, row)));
+    }
+    if (l + 1 < levels_.size()) make_coarser_matrix(l);
+  }
+  if (!has_direct_) return;
+  const Level& last = levels_.back();
+  const auto count = static_cast<Eigen::Index>(last.b.size());
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * count, 3 * count);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    for (int k = last.pattern->first()[at(row)]; k < last.pattern->first()[at(row) + 1]; ++k) {
+      for (Eigen::Index c = 0; c < 3; ++c)
+        for (Eigen::Index r = 0; r < 3; ++r)
+          dense(3 * row + r, 3 * last.pattern->columns()[at(k)] + c) =
+              static_cast<double>(last.matrix.block(k)[c][r]);
+    }
+  }
+  for (Eigen::Index i = 0; i < dense.rows(); ++i)
+    if (!(dense(i, i) > 0)) dense(i, i) = 1;  // a node whose points are all held
+  // Rounding in float may have cost it its definiteness.
+  constexpr double rounding = 1e-6;
+  dense.diagonal() *= 1 + rounding;
+  direct_.compute(dense);
+  for (double shift = rounding; direct_.info() != Eigen::Success && shift < 1; shift *= 10) {
+    dense.diagonal() *= 1 + 10 * shift;
+    direct_.compute(dense);
+  }
+}
+
+void Multilevel::make_coarser_matrix(std::size_t l) {
+  Level& level = levels_[l];
+  std::fill(level.half.begin(), level.half.end(), Float4{0, 0, 0, 0});
+  for (std::size_t row = 0; row < level.b.size(); ++row) {
+    for (int k = level.pattern->first()[row]; k < level.pattern->first()[row + 1]; ++k) {
+      const auto column = at(level.pattern->columns()[at(k)]);
+      const Float4* const a = level.matrix.block(k);
+      const Block3 block = {a[0], a[1], a[2]};
+      if (column < row) {
+        add_block(level.grid, level.coarser, level.grid.point(row), level.grid.point(column), block,
+                  level.half.data());
+      } else if (column == row) {
+        add_block(level.grid, level.coarser, level.grid.point(row), block, level.half.data());
+      }
+    }
+  }
+  levels_[l + 1].matrix.reset(level.coarser.pattern(), 0);
+  level.coarser.finish(level.half.data(), levels_[l + 1].matrix);
+}
+
+void Multilevel::solve(std::size_t l) {
+  Level& level = levels_[l];
+  const std::size_t count = level.b.size();
+  const Float4* const b = level.b.data();
+  Float4* const x = level.x.data();
+  const bool last = l + 1 == levels_.size();
+  if (last && has_direct_) {
+    Eigen::VectorXd v(3 * static_cast<Eigen::Index>(count));
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        v[static_cast<Eigen::Index>(3 * i + c)] = static_cast<double>(b[i][static_cast<int>(c)]);
+    v = direct_.solve(v);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        x[i][static_cast<int>(c)] = static_cast<float>(v[static_cast<Eigen::Index>(3 * i + c)]);
+    return;
+  }
+  std::fill(level.x.begin(), level.x.end(), Float4{0, 0, 0, 0});
+  const auto smooth = [&] {
+    for (std::size_t i = 0; i < count; ++i)
+      x[i] = level.inverse[i] * rest_of_row(*level.pattern, level.matrix, i, b[i], x);
+    for (std::size_t i = count; i-- > 0;)
+      x[i] = level.inverse[i] * rest_of_row(*level.pattern, level.matrix, i, b[i], x);
+  };
+  smooth();
+  if (last) {
+    for (int n = 1; n < sweeps_without; ++n) smooth();
+    return;
+  }
+  Level& coarser = levels_[l + 1];
+  std::fill(coarser.b.begin(), coarser.b.end(), Float4{0, 0, 0, 0});
+  for (std::size_t i = 0; i < count; ++i) {
+    const Float4* const a = level.matrix.block(level.pattern->find(static_cast<int>(i), static_cast<int>(i)));
+    const Float4 r = rest_of_row(*level.pattern, level.matrix, i, b[i], x) - Block3{a[0], a[1], a[2]} * x[i];
+    float w[8];
+    const BackgroundGrid::Cell& cell = level.grid.weights(level.grid.point(i), w);
+    for (int k = 0; k < cell.count; ++k) coarser.b[at(cell.nodes[at(k)])] += w[k] * r;
+  }
+  solve(l + 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    float w[8];
+    const BackgroundGrid::Cell& cell = level.grid.weights(level.grid.point(i), w);
+    for (int k = 0; k < cell.count; ++k) x[i] += w[k] * coarser.x[at(cell.nodes[at(k)])];
+  }
+  smooth();
+}
+
+std::size_t Multilevel::bytes() const {
+  std::size_t bytes = 0;
+  for (const Level& level : levels_) {
+    bytes += level.matrix.bytes() + level.grid.bytes() + level.coarser.bytes() +
+             level.inverse.capacity() * sizeof(Block3) +
+             (level.b.capacity() + level.x.capacity() + level.half.capacity()) * sizeof(Float4);
+  }
+  return bytes;
+}
+
+}  // namespace muslin

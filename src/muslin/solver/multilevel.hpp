@@ -1,0 +1,58 @@
+// Multigrid on block matrices: an approximate inverse, symmetric and positive definite, whose quality does
+// not depend on how many unknowns there are.
+//
+// One V-cycle: a symmetric Gauss-Seidel sweep, the remaining residual summed to the nodes of a grid of twice
+// the spacing and solved for there in the same way, its correction interpolated back, another sweep. The
+// coarser matrices are Pᵀ A P (Galerkin), P trilinear interpolation; the coarsest one is factorised
+// (Briggs, Henson, McCormick, A Multigrid Tutorial, 2000).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "muslin/solver/background_grid.hpp"
+
+namespace muslin {
+
+class Multilevel {
+ public:
+  /// For matrices of this pattern between nodes at `points` (#P by 3) of `components` (#P). `spacings` by
+  /// component: of the first grid behind them.
+  Multilevel(std::shared_ptr<const BlockPattern> pattern, ConstVectors points,
+             std::span<const int> components, std::vector<double> spacings);
+
+  /// The matrix to fill before `prepare`: symmetric and positive definite; of the pattern.
+  BlockMatrix& matrix() { return levels_[0].matrix; }
+  /// Makes the coarser matrices.
+  void prepare();
+
+  /// By node, to fill before `solve`, and its result; three floats and a zero each.
+  std::vector<Float4>& right_side() { return levels_[0].b; }
+  const std::vector<Float4>& solution() const { return levels_[0].x; }
+  /// solution = B · right side, B ≈ the inverse of the matrix.
+  void solve() { solve(0); }
+
+  std::size_t level_count() const { return levels_.size(); }
+  std::size_t bytes() const;
+
+ private:
+  struct Level {
+    std::shared_ptr<const BlockPattern> pattern;
+    BlockMatrix matrix;
+    std::vector<Block3> inverse;  // of the diagonal blocks
+    std::vector<Float4> b, x;
+    BackgroundGrid grid;  // behind it
+    GridMatrix coarser;
+    std::vector<Float4> half;  // of the coarser matrix
+  };
+  void solve(std::size_t level);
+  void make_coarser_matrix(std::size_t level);
+
+  std::vector<Level> levels_;
+  Eigen::LLT<Eigen::MatrixXd> direct_;
+  bool has_direct_ = false;
+};
+
+}  // namespace muslin
