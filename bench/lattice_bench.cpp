@@ -11,6 +11,7 @@
 #include "clock.hpp"
 #include "parts.hpp"
 #include "problems.hpp"
+#include "systems.hpp"
 #include "triad.hpp"
 #include <benchmark/benchmark.h>
 
@@ -229,6 +230,28 @@ void parts(benchmark::State& state, const ProblemSettings& settings) {
   state.counters["vertices"] = static_cast<double>(problem.masses.size());
 }
 
+/// The first linear system of a step, with the coarse space or without.
+void system(benchmark::State& state, const ProblemSettings& settings, double dt, bool coarse_space) {
+  Problem problem = make_problem(settings);
+  problem.coarse_space = coarse_space;
+  set_thread_count(1);
+  for (auto _ : state) {
+    const Clock clock;
+    for (const auto& [name, value] : lattice_system(problem, dt)) state.counters[name] = value;
+    state.SetIterationTime(clock.wall());
+  }
+  state.counters["voxels"] = static_cast<double>(problem.lattice.voxel_count());
+}
+
+void cloth(benchmark::State& state, int n, bool coarse_space) {
+  set_thread_count(1);
+  for (auto _ : state) {
+    const Clock clock;
+    for (const auto& [name, value] : cloth_steps(n, coarse_space)) state.counters[name] = value;
+    state.SetIterationTime(clock.wall());
+  }
+}
+
 void triad(benchmark::State& state, int threads) {
   set_thread_count(threads);
   for (auto _ : state) {
@@ -260,7 +283,22 @@ void add_benchmarks() {
     add("triad/threads:" + std::to_string(threads), [=](State& s) { triad(s, threads); });
   for (const char* name : {"flag_100x60", "flag_400x240", "falling_1000x600", "cube_40"})
     add(std::string(name) + "/parts", [settings = case_named(name)](State& s) { parts(s, settings); });
+  for (const bool coarse : {true, false}) {
+    const std::string way = coarse ? "/with" : "/without";
+    for (const char* name : {"flag_10x6", "flag_100x60", "flag_400x240", "flag_1000x600", "falling_1000x600",
+                             "cube_20", "cube_40", "cube_80"}) {
+      for (const bool lengthy : {false, true}) {
+        add(std::string("system/") + name + (lengthy ? "/long" : "/brief") + way,
+            [=, settings = case_named(name)](State& s) {
+              system(s, settings, lengthy ? 1.0 / 24 : 1.0 / 240, coarse);
+            });
+      }
+    }
+    for (const int n : {50, 100, 200})
+      add("cloth/" + std::to_string(n) + way, [=](State& s) { cloth(s, n, coarse); });
+  }
   for (const ProblemSettings& settings : cases()) {
+    if (settings.only_system) continue;
     // Long steps have several minima and are compared by residual alone. On two threads only what is needed
     // for an error of 1e-6.
     const bool lengthy = settings.dt > 0.01;

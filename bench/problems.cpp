@@ -125,6 +125,7 @@ const std::vector<ProblemSettings>& cases() {
       {"flag_200x120", {200, 120, 1}, 0.05, brief, Start::rest, 120},
       {"flag_400x240", {400, 240, 1}, 0.025, brief, Start::rest, 10, "flag_200x120"},
       {"crumpled_400x240", {400, 240, 1}, 0.025, brief, Start::rest, 10, "crumpled_100x60"},
+      {"flag_1000x600", {1000, 600, 1}, 0.01, brief, Start::rest, 2, "flag_400x240", true},
       {"falling_200x120", {200, 120, 1}, 0.05, brief, Start::rest, 8},
       {"falling_1000x600", {1000, 600, 1}, 0.01, brief, Start::rest, 8},
       {"cube_20", {20, 20, 20}, 0.2, brief, Start::rest, 24},

@@ -30,8 +30,9 @@ struct Problem {
   State state;
 
   StepProblem step_problem() const {
-    return {masses, {springs.get(), gravity.get()}, fixed, state.positions, nullptr,
-            coarse_space ? ConstVectors(rest_positions) : ConstVectors()};
+    return {masses,  {springs.get(), gravity.get()},
+            fixed,   state.positions,
+            nullptr, coarse_space ? ConstVectors(rest_positions) : ConstVectors()};
   }
   TextbookProblem textbook() const;
   /// Largest k dt² / m of an edge inside the body.
@@ -57,6 +58,7 @@ struct ProblemSettings {
   Start start = Start::rest;
   int steps = 20;
   std::string from = {};
+  bool only_system = false;  ///< whole steps are not measured
 };
 
 /// All cases, in the order in which they are measured.

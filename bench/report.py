@@ -87,6 +87,32 @@ def linear(results):
             "another two-core Xeon, ± 50 %.", "", *table(head, rows)]
 
 
+def systems(results):
+    """Iterations as bodies are cut finer, with the coarse space and without."""
+    goals = ("1e-1", "1e-3", "1e-5")
+    rows = []
+    for name, run in results.runs.items():
+        if not name.startswith("system/") or not name.endswith("/with"):
+            continue
+        _, case, length, _ = name.split("/")
+        without = results.get(name + "out")
+        rows.append([case, "1/24" if length == "long" else "1/240", number(run["stiffness_number"]),
+                     *(" / ".join(f"{r.get('iterations_' + g, math.nan):.0f}" for g in goals) for r in (without, run)),
+                     *(number(r.get("system_1e-3_ms")) for r in (without, run))])
+    head = ["case", "step [s]", "k dt²/m", "without", "with", "ms without", "ms with"]
+    lines = ["Iterations of a first linear system to 1e-1 / 1e-3 / 1e-5, without the coarse space and with it (which joins only "
+             "where a solve takes long), and milliseconds to 1e-3:", "", *table(head, rows)]
+    rows = []
+    for n in (50, 100, 200):
+        run, without = results.get(f"cloth/{n}/with"), results.get(f"cloth/{n}/without")
+        if run and without:
+            rows.append([f"{n}²", *(f"{r['newton']:.1f}, {r['linear']:.1f}" for r in (without, run)),
+                         *(number(r["steps_ms"]) for r in (without, run)), number(run["bytes_per_vertex"])])
+    head = ["squares", "without", "with", "ms without", "ms with", "B/vertex"]
+    return lines + ["", "Cloth that begins to hang, Newton and linear iterations a step of 1/240 s to 0.1 m/s²:", "",
+                    *table(head, rows)]
+
+
 def parts(results):
     found = {n.split("/")[0]: r for n, r in results.runs.items() if n.endswith("/parts")}
     names = {"energy_ns": "energy", "gradient_ns": "gradient", "linearise_ns": "linearise and factor",
@@ -112,7 +138,8 @@ def building(results):
 
 def text(results):
     lines = []
-    for section, needed in ((triad, "triad"), (steps, "/muslin/"), (linear, "/muslin_linear"), (parts, "/parts"),
+    for section, needed in ((triad, "triad"), (steps, "/muslin/"), (linear, "/muslin_linear"), (systems, "system/"),
+                            (parts, "/parts"),
                             (building, "build/")):
         if any(needed in name for name in results.runs):
             lines += ["", *section(results)]

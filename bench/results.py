@@ -4,7 +4,7 @@ import re
 FORMAT = 2  # of the files in bench/results
 KEPT = re.compile(r"ms$|_s$|_GB$|_ns$|_newton$|_linear$|^(name|error|residual|energy|newton|linear|vertices|voxels|"
                   r"triangles|compressed|bytes_per_vertex|iteration_bytes|stiffness_number|bytes_per_second|"
-                  r"error_message)$")
+                  r"error_message)$|^iterations_")
 # Where methods end in different minima, the same residual (in multiples of gravity) stands for the same error.
 RESIDUAL = {1e-3: 1, 1e-6: 1e-3}
 ERROR_GOAL = {1e-3: "error1e-3", 1e-6: "error1e-6"}

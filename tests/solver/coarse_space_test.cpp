@@ -167,8 +167,11 @@ TEST(CoarseSpace, IsSymmetricAndPositiveAndKeepsHeldVerticesAndBodiesApart) {
     EXPECT_GT(qq, 0);
     EXPECT_NEAR(dot(p, cp), pp, 1e-4 * pp);
     EXPECT_NEAR(dot(q, cp), dot(p, cq), 1e-4 * pp);
-    for (std::size_t v = 0; v < p.size(); ++v)
-      if (bodies.fixed[v] != 0) EXPECT_EQ(cp[v], Vec3::Zero());
+    for (std::size_t v = 0; v < p.size(); ++v) {
+      if (bodies.fixed[v] != 0) {
+        EXPECT_EQ(cp[v], Vec3::Zero());
+      }
+    }
     // A residual on one body moves nothing of the other.
     std::vector<Vec3> only = p;
     std::fill(only.begin() + static_cast<std::ptrdiff_t>(bodies.first[1]), only.end(), Vec3::Zero());

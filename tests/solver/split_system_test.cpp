@@ -114,6 +114,9 @@ TEST_P(SplitSystemTest, TakesCorrectionsOfTheResidualIntoItsDirections) {
   }
   // t = (F Fᵀ)⁻¹ b + c on the body; its quadratic form is that of H.
   const Floats correction = system.correction();
+  std::size_t positions = 0;
+  for (const Couplings* set : h_.sets()) positions += set->pattern().position_count();
+  for (float* each : {correction.x, correction.y, correction.z}) std::fill_n(each, positions, 0.0F);
   for (std::size_t v = 0; v < body_; ++v) {
     const auto i = pattern.position(v);
     correction.x[i] = static_cast<float>(c[v].x()), correction.y[i] = static_cast<float>(c[v].y());

@@ -55,6 +55,14 @@ void for_each_pair(const BlockPattern& pattern, const Body& body) {
   }
 }
 
+/// to += scale w_k w_l for k ≤ l
+void add_square(int count, const float* w, float scale, float* to) {
+  for (int k = 0; k < count; ++k) {
+    const float each = scale * w[k];
+    for (int l = k; l < count; ++l) *to++ += each * w[l];
+  }
+}
+
 }  // namespace
 
 CoarseSpace::CoarseSpace(const Linearization& h, ConstVectors rest_positions)
@@ -169,16 +177,6 @@ bool CoarseSpace::fits(const Linearization& h, ConstVectors rest_positions) cons
 
 /// Which couplings go together: anew whenever other vertices are held.
 void CoarseSpace::bundle() {
-  const auto add_square = [](int count, const float* w, Bundle& bundle) {
-    std::size_t i = 0;
-    for (int k = 0; k < count; ++k)
-      for (int l = k; l < count; ++l) bundle.weights[i++] += w[k] * w[l];
-    ++bundle.count;
-  };
-  const auto finish = [](std::vector<Bundle>& bundles) {
-    for (Bundle& bundle : bundles)
-      for (float& w : bundle.weights) w /= std::max(bundle.count, 1.0F);
-  };
   int kinds = 0;
   for (const Set& set : sets_)
     for (const CouplingPattern::Block& block : set.pattern->blocks()) kinds = std::max(kinds, block.kind + 1);
@@ -202,22 +200,14 @@ void CoarseSpace::bundle() {
         const BackgroundGrid::Cell& cell = grid_.weights(p, w);
         grid_.weights(q, v);
         for (int k = 0; k < cell.count; ++k) w[k] -= v[k];
-        add_square(cell.count, w, bundles_[at(n)]);
+        add_square(cell.count, w, 1, bundles_[at(n)].weights.data());
+        ++bundles_[at(n)].count;
         bundle_[(set.first_block + b) * lanes + at(l)] = n;
       }
     }
   }
-  mass_bundles_.assign(grid_.cells().size(), Bundle{});
-  for (std::size_t i = 0; i < held_.size(); ++i) {
-    const BackgroundGrid::Point p = point(i);
-    if (p.cell < 0) continue;
-    float w[8];
-    const BackgroundGrid::Cell& cell = grid_.weights(p, w);
-    mass_bundles_[at(p.cell)].cell = p.cell;
-    add_square(cell.count, w, mass_bundles_[at(p.cell)]);
-  }
-  finish(bundles_);
-  finish(mass_bundles_);
+  for (Bundle& bundle : bundles_)
+    for (float& w : bundle.weights) w /= bundle.count;
 }
 
 void CoarseSpace::add_couplings(const Couplings& couplings, const Set& set, std::size_t part,
@@ -256,7 +246,10 @@ void CoarseSpace::add_masses(const Linearization& h, std::size_t part, Sums& sum
   const auto [begin, end] = share(part, vertex_count_);
   for (std::size_t v = begin; v < end; ++v) {
     const BackgroundGrid::Point p = point(at(position_[v]));
-    if (p.cell >= 0) sums.masses[at(p.cell)] += h.identity()[v];
+    if (p.cell < 0) continue;
+    float w[8];
+    const BackgroundGrid::Cell& cell = grid_.weights(p, w);
+    add_square(cell.count, w, h.identity()[v], sums.masses[at(p.cell)].data());
   }
 }
 
@@ -297,7 +290,7 @@ void CoarseSpace::assemble(const Linearization& h) {
   parallel_for(sums_.size(), 1, [&](std::size_t part, std::size_t) {
     Sums& sums = sums_[part];
     std::fill(sums.half.begin(), sums.half.end(), Float4{0, 0, 0, 0});
-    std::fill(sums.masses.begin(), sums.masses.end(), 0.0F);
+    std::fill(sums.masses.begin(), sums.masses.end(), Square{});
     sums.couplings.assign(bundles_.size(), Block3{});
     for (std::size_t s = 0; s < sets_.size(); ++s) add_couplings(*h.sets()[s], sets_[s], part, sums);
     add_masses(h, part, sums);
@@ -308,7 +301,8 @@ void CoarseSpace::assemble(const Linearization& h) {
   for (std::size_t part = 1; part < sums_.size(); ++part) {
     const Sums& sums = sums_[part];
     for (std::size_t i = 0; i < all.half.size(); ++i) all.half[i] += sums.half[i];
-    for (std::size_t i = 0; i < all.masses.size(); ++i) all.masses[i] += sums.masses[i];
+    for (std::size_t i = 0; i < all.masses.size(); ++i)
+      for (std::size_t k = 0; k < all.masses[i].size(); ++k) all.masses[i][k] += sums.masses[i][k];
     for (std::size_t i = 0; i < all.couplings.size(); ++i) {
       Block3& sum = all.couplings[i];
       sum.x += sums.couplings[i].x, sum.y += sums.couplings[i].y, sum.z += sums.couplings[i].z;
@@ -318,11 +312,9 @@ void CoarseSpace::assemble(const Linearization& h) {
     const Bundle& bundle = bundles_[n];
     add_weighted(grid_, grid_matrix_, bundle.cell, bundle.weights.data(), all.couplings[n], all.half.data());
   }
-  for (std::size_t c = 0; c < mass_bundles_.size(); ++c) {
-    const float m = all.masses[c];
-    add_weighted(grid_, grid_matrix_, static_cast<int>(c), mass_bundles_[c].weights.data(),
-                 Block3{{m, 0, 0, 0}, {0, m, 0, 0}, {0, 0, m, 0}}, all.half.data());
-  }
+  constexpr Block3 identity = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  for (std::size_t c = 0; c < all.masses.size(); ++c)
+    add_weighted(grid_, grid_matrix_, static_cast<int>(c), all.masses[c].data(), identity, all.half.data());
   multilevel_->matrix().reset(grid_matrix_.pattern(), 0);
   grid_matrix_.finish(all.half.data(), multilevel_->matrix());
   multilevel_->prepare();
@@ -374,10 +366,10 @@ double CoarseSpace::correct(const float* r, Floats t) {
 std::size_t CoarseSpace::bytes() const {
   std::size_t bytes = grid_.bytes() + grid_matrix_.bytes() + position_.capacity() * sizeof(int) +
                       held_.capacity() + bundle_.capacity() * sizeof(int) +
-                      (bundles_.capacity() + mass_bundles_.capacity()) * sizeof(Bundle);
+                      bundles_.capacity() * sizeof(Bundle);
   for (const Sums& sums : sums_) {
     bytes += (sums.half.capacity() + sums.right_side.capacity()) * sizeof(Float4) +
-             sums.couplings.capacity() * sizeof(Block3) + sums.masses.capacity() * sizeof(float);
+             sums.couplings.capacity() * sizeof(Block3) + sums.masses.capacity() * sizeof(Square);
   }
   return bytes + (multilevel_ ? multilevel_->bytes() : 0);
 }

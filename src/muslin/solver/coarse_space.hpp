@@ -57,16 +57,17 @@ class CoarseSpace {
   }
   /// Couplings of one kind in one cell: the sum over them of δ_k δ_l (k ≤ l, as add_weighted has them),
   /// divided by their number. The masses of a cell's vertices likewise.
+  using Square = std::array<float, 36>;  // for nodes k ≤ l of a cell, as add_weighted has them
   struct Bundle {
     int cell = 0;
     float count = 0;
-    std::array<float, 36> weights{};
+    Square weights{};
   };
   /// What the parts of a sum have in common room for.
   struct Sums {
     std::vector<Float4> half, right_side;
     std::vector<Block3> couplings;  // by bundle
-    std::vector<float> masses;      // by cell
+    std::vector<Square> masses;     // by cell
   };
   void bundle();
   void add_couplings(const Couplings& couplings, const Set& set, std::size_t part, Sums& sums) const;
@@ -81,10 +82,10 @@ class CoarseSpace {
   std::vector<int> position_;  // by vertex
   BackgroundGrid grid_;        // points by position
   GridMatrix grid_matrix_;
-  std::vector<std::uint8_t> held_;              // by position
-  std::vector<int> bundle_;                     // by block of couplings and lane; −1: by itself
-  std::vector<Bundle> bundles_, mass_bundles_;  // the latter by cell
-  std::vector<Sums> sums_;                      // by part
+  std::vector<std::uint8_t> held_;  // by position
+  std::vector<int> bundle_;         // by block of couplings and lane; −1: by itself
+  std::vector<Bundle> bundles_;
+  std::vector<Sums> sums_;  // by part
   std::unique_ptr<Multilevel> multilevel_;
 };
 
