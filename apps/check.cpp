@@ -3,6 +3,8 @@
 #include <memory>
 
 #include "command.hpp"
+#include "picture.hpp"
+#include <fmt/format.h>
 
 #include "muslin/muslin.hpp"
 
@@ -10,7 +12,7 @@ namespace muslin::app {
 
 void add_check(CLI::App& program) {
   struct Arguments {
-    std::string file;
+    std::string file, picture;
     bool json = false;
     std::vector<std::string> set;
   };
@@ -19,14 +21,26 @@ void add_check(CLI::App& program) {
   auto a = std::make_shared<Arguments>();
   command->add_option("FILE", a->file, "scene (.toml) or mesh file")->required();
   command->add_flag("--json", a->json, "for programs");
+  command->add_option("--picture", a->picture, "FILE.png of the start of a scene, crossings marked");
   command->add_option("--set", a->set, "KEY=VALUE overrides a setting of the scene")->allow_extra_args(false);
   command->callback([a] {
     listen_for_interrupts();
     if (std::filesystem::path(a->file).extension() == ".toml") {
       const Model model = build_model(read_scene(a->file, a->set), {{}, [] { return interrupted(); }});
-      print(a->json ? describe_json(model) : describe_text(model));
+      const std::vector<Crossing> crossings =
+          model.contact ? find_crossings(*model.contact, model.rest_positions) : std::vector<Crossing>();
+      print(a->json ? describe_json(model, crossings) : describe_text(model, crossings));
+      if (!a->picture.empty()) write_png(a->picture, draw_start(model, crossings));
+      if (!crossings.empty()) {
+        throw Error(
+            ErrorKind::input, {a->file},
+            fmt::format("surfaces cross at the start in {} places", crossings.size()),
+            a->picture.empty() ? "move them apart; --picture FILE.png shows where" : "move them apart");
+      }
       return;
     }
+    if (!a->picture.empty())
+      throw Error(ErrorKind::usage, "--picture is for scenes", "name a .toml file, or leave it out");
     const MeshFile file = read_mesh(a->file);
     require_usable(file.mesh, a->file);
     MeshReport report = inspect(file.mesh);

@@ -35,8 +35,32 @@ struct RunPictures::Parts {
   std::vector<EdgeStretch> stretch;
   std::unique_ptr<Raytracer> tracer;
 
+  Look look(int body, const Mesh& mesh) const {
+    const Vec3 colour = run.colour(body);
+    if (run.is_collider(body)) {
+      Look look = prop_look();
+      look.colour = colour;
+      return look;
+    }
+    return is_closed(mesh) ? solid_look(colour) : fabric_look(colour);
+  }
+  /// Where all bodies are shown, what is no lattice is shown as it is.
+  SurfaceKind surface(int body) const {
+    return options.body.empty() && !run.has_lattice(body) ? SurfaceKind::skin : options.surface;
+  }
   std::vector<Vec3> points(int body, int frame) const {
-    return in_double(run.points(body, options.surface, frame));
+    return in_double(run.points(body, surface(body), frame));
+  }
+
+  /// The height of a plane that is a floor and stands still: it is drawn without an end.
+  std::optional<double> floor_height(int body) const {
+    if (!run.is_plane(body)) return std::nullopt;
+    const Mesh& mesh = run.mesh(body, SurfaceKind::skin);
+    const Vec3 normal = newell_normal(mesh.positions, mesh.face(0)).normalized();
+    const std::vector<Vec3> first = points(body, 0), last = points(body, run.frame_count() - 1);
+    const bool still = run.frame_count() > 0 && first == points(body, run.frame_count() / 2) && first == last;
+    if (!still || normal.y() < 1 - 1e-9) return std::nullopt;
+    return first.front().y();
   }
 };
 
@@ -48,10 +72,15 @@ RunPictures::RunPictures(RunReader run, const PictureOptions& options, const Pro
   else
     p.bodies.push_back(p.run.find_body(options.body));
   SceneView scene;
+  if (options.ground && options.body.empty()) {
+    for (const int body : p.bodies)
+      if (const auto height = p.floor_height(body))
+        scene.ground = std::max(*height, scene.ground.value_or(*height));
+    if (scene.ground) std::erase_if(p.bodies, [&](int body) { return p.floor_height(body).has_value(); });
+  }
   for (int body : p.bodies) {
-    const Mesh& mesh = p.run.mesh(body, options.surface);
-    const Vec3 colour = p.run.colour(body);
-    scene.surfaces.push_back(make_surface(mesh, is_closed(mesh) ? solid_look(colour) : fabric_look(colour)));
+    const Mesh& mesh = p.run.mesh(body, p.surface(body));
+    scene.surfaces.push_back(make_surface(mesh, p.look(body, mesh)));
     if (options.stretch) p.stretch.emplace_back(mesh);
   }
   CameraFit fit(options.camera, static_cast<double>(options.render.width) / options.render.height);
@@ -61,13 +90,16 @@ RunPictures::RunPictures(RunReader run, const PictureOptions& options, const Pro
     progress.at(static_cast<double>(frame) / frame_count(), "looking for the view");
     for (std::size_t b = 0; b < p.bodies.size(); ++b) {
       const std::vector<Vec3> x = p.points(p.bodies[b], frame);
-      fit.add(x);
-      for (const Vec3& point : x) bounds.extend(point);
-      if (options.stretch)
+      // A plane has no end: what there is to see is on it.
+      if (!p.run.is_plane(p.bodies[b]) || p.bodies.size() == 1) {
+        fit.add(x);
+        for (const Vec3& point : x) bounds.extend(point);
+      }
+      if (options.stretch && !p.run.is_collider(p.bodies[b]))
         for (double percent : p.stretch[b].at(x)) largest_stretch = std::max(largest_stretch, percent);
     }
   }
-  if (options.ground) scene.ground = bounds.min().y() - 0.02 * bounds.diagonal().norm();
+  if (options.ground && !scene.ground) scene.ground = bounds.min().y() - 0.02 * bounds.diagonal().norm();
   if (options.stretch) {
     ColourScale scale;
     scale.high = options.stretch_max ? *options.stretch_max : round_up(largest_stretch);
@@ -90,11 +122,44 @@ Image RunPictures::draw(int frame) {
   FrameView view;
   for (std::size_t b = 0; b < p.bodies.size(); ++b) {
     positions.push_back(p.points(p.bodies[b], frame));
-    values.push_back(p.options.stretch ? p.stretch[b].at(positions.back()) : std::vector<double>());
+    const bool coloured = p.options.stretch && !p.run.is_collider(p.bodies[b]);
+    values.push_back(coloured ? p.stretch[b].at(positions.back()) : std::vector<double>());
   }
   for (std::size_t b = 0; b < p.bodies.size(); ++b) view.surfaces.push_back({positions[b], values[b]});
   view.label = fmt::format("{}   {:.2f} s", p.run.title(), frame / p.run.frame_rate());
   return p.tracer->render(view);
+}
+
+Image draw_start(const Model& model, const std::vector<Crossing>& crossings) {
+  constexpr std::size_t most_balls = 500;
+  const RenderOptions render = PictureOptions().render;
+  SceneView scene;
+  FrameView view;
+  CameraFit fit({}, static_cast<double>(render.width) / render.height);
+  Box bounds;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    const bool collider = b >= model.scene.bodies.size();
+    const Vec3 colour = colour_of(model.scene, b);
+    Look look = collider ? prop_look() : body.sheet ? fabric_look(colour) : solid_look(colour);
+    look.colour = colour;
+    scene.surfaces.push_back(make_surface(body.mesh, look));
+    view.surfaces.push_back({body.mesh.positions, {}});
+    const bool plane = collider && model.scene.colliders[b - model.scene.bodies.size()].shape ==
+                                       ColliderSettings::Shape::plane;
+    if (plane) continue;
+    fit.add(body.mesh.positions);
+    bounds.extend(body.mesh.bounds());
+  }
+  Marker ball;
+  ball.radius = 0.012 * bounds.diagonal().norm();
+  ball.colour = Vec3(0.95, 0.1, 0.1);
+  for (std::size_t i = 0; i < std::min(crossings.size(), most_balls); ++i) {
+    ball.position = crossings[i].at;
+    view.markers.push_back(ball);
+  }
+  view.label = fmt::format("{}   {} crossings", model.scene.title, crossings.size());
+  return Raytracer(std::move(scene), fit.camera(), render).render(view);
 }
 
 void write_run_plots(const RunReader& run) {

@@ -33,6 +33,9 @@ class RunPictures {
   std::unique_ptr<Parts> parts_;
 };
 
+/// The start of a scene, with a red ball wherever surfaces cross.
+Image draw_start(const Model& model, const std::vector<Crossing>& crossings);
+
 /// energy.svg, energy.png, stretch.svg, stretch.png in the run directory.
 void write_run_plots(const RunReader& run);
 

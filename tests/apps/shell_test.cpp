@@ -76,7 +76,7 @@ TEST(ShellRun, IsExportedAndBuilt) {
   const auto contour = run(scratch, {"export", directory, (scratch / "b.obj").string(), "--body", "cloth",
                                      "--surface", "contour"});
   EXPECT_EQ(contour.code, 2);
-  EXPECT_THAT(contour.err, HasSubstr("is a shell, which has no contour"));
+  EXPECT_THAT(contour.err, HasSubstr("has no contour"));
   ASSERT_EQ(
       run(scratch, {"build", (scratch / "scene.toml").string(), "-o", (scratch / "stages").string()}).code,
       0);
@@ -85,8 +85,8 @@ TEST(ShellRun, IsExportedAndBuilt) {
   EXPECT_EQ(stats["bodies"][1]["triangles"], 96);
 
   const RunReader reader(scratch / "run");
-  EXPECT_FALSE(reader.is_shell(0));
-  EXPECT_TRUE(reader.is_shell(1));
+  EXPECT_TRUE(reader.has_lattice(0));
+  EXPECT_FALSE(reader.has_lattice(1));
   const auto points = reader.points(1, SurfaceKind::skin, 2);
   EXPECT_EQ(points[0], Vec3f::Zero());
   EXPECT_LT(points[62].y(), -0.001F);

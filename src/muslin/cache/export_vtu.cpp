@@ -60,7 +60,7 @@ struct Cells {
 
 Cells cells_of(const RunReader& run, int body) {
   Cells cells;
-  if (run.is_shell(body)) {
+  if (!run.has_lattice(body)) {
     const auto triangles = std::make_shared<Triangulation>(triangulate(run.mesh(body, SurfaceKind::skin)));
     for (const Vec3i& t : triangles->triangles) {
       const std::array<std::int64_t, 3> corners = {t[0], t[1], t[2]};

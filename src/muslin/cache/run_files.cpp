@@ -56,8 +56,8 @@ bool is_run(const fs::path& directory) {
 namespace {
 
 const std::vector<std::string>& own_names() {
-  static const std::vector<std::string> names = {"scene.toml", "diagnostics.csv", "probes.csv", "stats.json",
-                                                 "selections.json", "run.json"};
+  static const std::vector<std::string> names = {"scene.toml", "diagnostics.csv", "probes.csv",
+                                                 "stats.json", "selections.json", "run.json"};
   return names;
 }
 

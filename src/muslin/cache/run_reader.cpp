@@ -13,6 +13,7 @@
 #include "muslin/core/error.hpp"
 #include "muslin/core/input_file.hpp"
 #include "muslin/io/mesh_file.hpp"
+#include "muslin/scene/colours.hpp"
 
 namespace muslin {
 namespace {
@@ -38,12 +39,10 @@ struct Track {
   }
 };
 
-const std::array<Vec3, 5> palette = {Vec3(0.72, 0.20, 0.17), Vec3(0.16, 0.42, 0.62), Vec3(0.82, 0.60, 0.20),
-                                     Vec3(0.30, 0.52, 0.32), Vec3(0.50, 0.34, 0.58)};
-
 struct BodyTracks {
   Track skin;
-  std::optional<Track> contour, lattice;  // not of shells
+  bool collider = false, plane = false;
+  std::optional<Track> contour, lattice;  // of lattices only
   Mesh skin_mesh, contour_mesh;
   RunReader::LatticeShape shape;
 };
@@ -57,6 +56,9 @@ bool describes_run(const Json& run) {
          std::all_of(run["bodies"].begin(), run["bodies"].end(),
                      [](const Json& body) { return body.is_object() && is_text(body, "name"); });
 }
+
+/// Runs of before there were other models do not say.
+bool is_lattice(const Json& body) { return body.value("model", "lattice") == "lattice"; }
 
 }  // namespace
 
@@ -82,7 +84,7 @@ struct RunReader::Parts {
     if (surface == SurfaceKind::skin || body(index).contour) return;
     throw Error(
         ErrorKind::usage, {directory.string()},
-        "the body \"" + names.at(static_cast<std::size_t>(index)) + "\" is a shell, which has no contour",
+        "the body \"" + names.at(static_cast<std::size_t>(index)) + "\" has no contour: it is no lattice",
         "take its skin");
   }
 };
@@ -108,8 +110,14 @@ RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
     parts.names.push_back(body["name"]);
     const BodyFiles files = body_files(parts.names.back());
     const auto track = [&](const std::string& name) { return Track{Pc2Reader(parts.directory / name)}; };
-    BodyTracks tracks{
-        track(files.skin_cache), {}, {}, read_mesh(parts.directory / files.skin_mesh).mesh, {}, {}};
+    BodyTracks tracks{track(files.skin_cache),
+                      body.contains("shape"),
+                      body.value("shape", Json()) == "plane",
+                      {},
+                      {},
+                      read_mesh(parts.directory / files.skin_mesh).mesh,
+                      {},
+                      {}};
     const auto fit = [&](const Track& points, std::size_t count, const std::string& file) {
       if (points.cache.points() != count) {
         throw Error(ErrorKind::input, {(parts.directory / file).string()},
@@ -118,7 +126,7 @@ RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
       frames = std::min(frames, static_cast<std::size_t>(points.cache.samples()));
     };
     fit(tracks.skin, tracks.skin_mesh.vertex_count(), files.skin_cache);
-    if (body.value("model", "") != "shell") {
+    if (is_lattice(body)) {
       VtkVoxels voxels = read_voxels(parts.directory / files.lattice_mesh);
       tracks.shape = {std::move(voxels.points), std::move(voxels.voxels)};
       tracks.contour = track(files.contour_cache);
@@ -159,11 +167,16 @@ const Selections& RunReader::selections() const { return parts_->selections; }
 Vec3 RunReader::colour(int body) const {
   const auto b = static_cast<std::size_t>(body);
   const Json scene = parts_->run.value("scene", Json());
-  const auto place = Json::json_pointer("/body/" + std::to_string(b) + "/colour");
-  const Json own = scene.is_object() ? scene.value(place, Json()) : Json();
+  if (!scene.is_object()) return palette_colour(b);
+  // Bodies come first, then colliders.
+  const std::size_t bodies = scene.value("body", Json::array()).size();
+  const bool collider = b >= bodies && scene.contains("collider");
+  const std::string list =
+      collider ? "/collider/" + std::to_string(b - bodies) : "/body/" + std::to_string(b);
+  const Json own = scene.value(Json::json_pointer(list + "/colour"), Json());
   const auto is_number = [](const Json& value) { return value.is_number(); };
   if (!own.is_array() || own.size() != 3 || !std::all_of(own.begin(), own.end(), is_number))
-    return palette[b % palette.size()];
+    return collider ? collider_colour() : palette_colour(b);
   return {own[0].get<double>(), own[1].get<double>(), own[2].get<double>()};
 }
 
@@ -186,7 +199,9 @@ int RunReader::find_body(const std::string& name) const {
               "choose one with --body: " + known);
 }
 
-bool RunReader::is_shell(int body) const { return !parts_->body(body).lattice; }
+bool RunReader::is_collider(int body) const { return parts_->body(body).collider; }
+bool RunReader::is_plane(int body) const { return parts_->body(body).plane; }
+bool RunReader::has_lattice(int body) const { return parts_->body(body).lattice.has_value(); }
 const Mesh& RunReader::mesh(int body, SurfaceKind surface) const {
   parts_->require(body, surface);
   return surface == SurfaceKind::skin ? parts_->body(body).skin_mesh : parts_->body(body).contour_mesh;

@@ -43,21 +43,25 @@ class RunReader {
   /// Index of a body by name; an empty name means the only body. Error(usage) naming the bodies there are.
   int find_body(const std::string& name) const;
 
-  /// In pictures, sRGB 0…1: as the scene says, else from a palette.
+  /// In pictures, sRGB 0…1: as the scene says, else from a palette; colliders are grey.
   Vec3 colour(int body) const;
 
-  /// A shell has a skin, and neither contour nor lattice.
-  bool is_shell(int body) const;
+  bool is_collider(int body) const;
+  /// A collider without end, of which a patch is shown.
+  bool is_plane(int body) const;
+  /// Shells and colliders have a skin, and neither contour nor lattice.
+  bool has_lattice(int body) const;
 
-  /// The surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of a shell.
+  /// The surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of what is
+  /// no lattice.
   const Mesh& mesh(int body, SurfaceKind surface) const;
   /// Its vertices at a frame, in the same order [m].
   std::vector<Vec3f> points(int body, SurfaceKind surface, int frame) const;
   /// Their velocities by central differences over the neighbouring frames, one-sided at the ends [m/s].
   std::vector<Vec3f> velocities(int body, SurfaceKind surface, int frame) const;
 
-  /// The body's lattice; empty for a shell: rest positions [m], and voxels with their corners in the order of
-  /// Lattice.
+  /// The body's lattice; empty if it has none: rest positions [m], and voxels with their corners in the order
+  /// of Lattice.
   struct LatticeShape {
     std::vector<Vec3> rest_positions;
     std::vector<std::array<int, 8>> voxels;

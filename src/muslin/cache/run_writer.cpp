@@ -152,7 +152,7 @@ void RunWriter::Parts::start() {
   for (const Body& body : model.bodies) {
     const BodyFiles files = body_files(body.name);
     write_mesh(directory / files.skin_mesh, body.mesh);
-    if (body.is_shell()) continue;
+    if (!body.has_lattice()) continue;
     write_mesh(directory / files.contour_mesh, body.contour.mesh);
     VtkGrid grid;
     grid.points = flat(model.of(body, model.rest_positions));
@@ -176,7 +176,7 @@ void RunWriter::Parts::open_files(int frames) {
       return Pc2Writer(directory / name, points, mode, frames);
     };
     caches.push_back({open(files.skin_cache, body.mesh.vertex_count()), {}, {}});
-    if (body.is_shell()) continue;
+    if (!body.has_lattice()) continue;
     caches.back().contour = open(files.contour_cache, body.contour.mesh.vertex_count());
     caches.back().lattice = open(files.lattice_cache, static_cast<std::size_t>(body.vertex_count));
   }
@@ -248,7 +248,9 @@ void RunWriter::Parts::compare_scene(const Json& run) {
   for (const auto& step : Json::diff(old_scene, parsed_scene(model()))) {
     const std::string setting = dotted(step.value("path", ""));
     changes.push_back(setting);
-    if (setting.starts_with("body")) bodies.push_back(setting);
+    const bool of_collider =
+        setting.starts_with("collider") && setting.find("keyframes") == std::string::npos;
+    if (setting.starts_with("body") || of_collider) bodies.push_back(setting);
   }
   if (!bodies.empty()) {
     throw Error(ErrorKind::input, {directory.string()},
@@ -270,7 +272,7 @@ void RunWriter::Parts::append_points() {
     points.resize(body.skin.size());
     body.skin.apply(q, points);
     caches[b].skin.append(points);
-    if (body.is_shell()) continue;
+    if (!body.has_lattice()) continue;
     points.resize(body.contour.embedding.size());
     body.contour.embedding.apply(q, points);
     caches[b].contour->append(points);
@@ -329,7 +331,12 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
     Json entry = {{"name", body.name},
                   {"model", name_of(body_model_names(), body.model)},
                   {"skin", {{"mesh", files.skin_mesh}, {"cache", files.skin_cache}}}};
-    if (!body.is_shell()) {
+    const std::size_t index = run["bodies"].size();
+    if (index >= model.scene.bodies.size()) {
+      const ColliderSettings& collider = model.scene.colliders[index - model.scene.bodies.size()];
+      entry["shape"] = name_of(collider_shape_names(), collider.shape);
+    }
+    if (body.has_lattice()) {
       entry["contour"] = {{"mesh", files.contour_mesh}, {"cache", files.contour_cache}};
       entry["lattice"] = {{"mesh", files.lattice_mesh}, {"cache", files.lattice_cache}};
     }

@@ -46,6 +46,7 @@ Selections selections_of(const Model& model) {
       return pin.vertices.front() < body.first_vertex + body.vertex_count;
     };
     const auto body = std::find_if(model.bodies.begin(), model.bodies.end(), holds);
+    if (body->is_rigid()) continue;  // held as a whole, by vertices that nobody sees
     Chosen chosen{pin.name, static_cast<int>(body - model.bodies.begin()), {}, pin.from, pin.until, -1};
     for (const int v : pin.vertices) chosen.vertices.push_back(v - body->first_vertex);
     selections.pins.push_back(std::move(chosen));
@@ -55,10 +56,10 @@ Selections selections_of(const Model& model) {
     if (force.type != ForceSettings::Type::point) continue;
     const auto body = std::find_if(model.bodies.begin(), model.bodies.end(),
                                    [&](const Body& each) { return each.name == force.body; });
-    if (body == model.bodies.end()) continue;
+    if (body == model.bodies.end() || !force.where) continue;
     selections.point_forces.push_back({force.name, static_cast<int>(body - model.bodies.begin()),
-                                       select_vertices(*body, force.where, "force " + force.name), force.from,
-                                       force.until, static_cast<int>(f)});
+                                       select_vertices(*body, *force.where, "force " + force.name),
+                                       force.from, force.until, static_cast<int>(f)});
   }
   return selections;
 }

@@ -88,8 +88,8 @@ void write_stages(const std::filesystem::path& directory, const Model& model, co
     body_files(body.name);  // refuses names that cannot be file names
     const auto at = [&](const char* stage) { return directory / (body.name + "." + stage); };
     const std::vector<double> rest = flat(model.of(body, model.rest_positions));
-    if (body.is_shell()) {
-      write_vtu(at("shell.vtu"), triangles(body, rest));
+    if (body.is_shell()) write_vtu(at("shell.vtu"), triangles(body, rest));
+    if (!body.has_lattice()) {
       write_mesh(at("skin.obj"), body.mesh);
       continue;
     }

@@ -126,6 +126,13 @@ std::int64_t TomlTable::integer(std::string_view key, std::int64_t min, std::int
   return value->integer;
 }
 
+bool TomlTable::boolean(std::string_view key, bool fallback) const {
+  const TomlValue* value = find(key);
+  if (value == nullptr) return fallback;
+  if (value->type != TomlValue::Type::boolean) throw wrong_type(*value, name_of(key), "write true or false");
+  return value->boolean;
+}
+
 Vec3 TomlTable::vector(std::string_view key, std::string_view unit) const {
   return to_vector(require(key, fmt::format("three numbers [x, y, z] [{}]", unit)), name_of(key), unit);
 }

@@ -49,6 +49,7 @@ class TomlTable {
   double number(std::string_view key, std::string_view unit, const Range& range) const;
   double number(std::string_view key, std::string_view unit, const Range& range, double fallback) const;
   std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max, std::int64_t fallback) const;
+  bool boolean(std::string_view key, bool fallback) const;
   Vec3 vector(std::string_view key, std::string_view unit) const;
   Vec3 vector(std::string_view key, std::string_view unit, const Vec3& fallback) const;
   std::string string(std::string_view key) const;

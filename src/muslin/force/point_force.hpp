@@ -9,16 +9,22 @@
 
 namespace muslin {
 
-/// The force f [N] on each of the listed vertices, wherever they go: W = −Σ f·xᵥ. f is read at the end of
+/// The force f [N] on each of the listed vertices, wherever they go: W = −Σ wᵥ f·xᵥ. f is read at the end of
 /// each step.
 class PointForce : public Load {
  public:
-  /// vertices: each at most once.
-  PointForce(std::vector<int> vertices, Keyed force, Window window);
+  /// vertices: each at most once; weights: one for each, none for 1 each.
+  PointForce(const std::vector<int>& vertices, Keyed force, Window window,
+             const std::vector<double>& weights = {});
   std::unique_ptr<Potential> potential(const StepContext& step) const override;
 
  private:
-  std::shared_ptr<const std::vector<int>> vertices_;
+  struct Share {
+    int vertex = 0;
+    double weight = 1;
+  };
+  class DeadLoad;
+  std::shared_ptr<const std::vector<Share>> shares_;
   Keyed force_;
   Window window_;
 };

@@ -31,17 +31,6 @@ auto at_place(const Place& place, const std::string& file, const Build& build) -
   }
 }
 
-/// J = 1.
-Embedding identity_embedding(std::size_t count) {
-  Embedding embedding;
-  for (std::size_t v = 0; v < count; ++v) {
-    embedding.vertices.emplace_back().fill(static_cast<int>(v));
-    embedding.weights.push_back({1});
-  }
-  embedding.prepare_transpose(count);
-  return embedding;
-}
-
 class BodyBuilder {
  public:
   BodyBuilder(const Scene& scene, const BodySettings& settings, std::vector<std::string>& warnings)
@@ -239,6 +228,16 @@ class BodyBuilder {
 Body build_body(const Scene& scene, const BodySettings& settings, std::vector<std::string>& warnings,
                 const Progress& progress) {
   return BodyBuilder(scene, settings, warnings).build(progress);
+}
+
+Embedding identity_embedding(std::size_t count) {
+  Embedding embedding;
+  for (std::size_t v = 0; v < count; ++v) {
+    embedding.vertices.emplace_back().fill(static_cast<int>(v));
+    embedding.weights.push_back({1});
+  }
+  embedding.prepare_transpose(count);
+  return embedding;
 }
 
 std::vector<double> voxel_shares(const Body& body, const BodySettings& settings) {

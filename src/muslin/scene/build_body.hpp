@@ -15,6 +15,9 @@ namespace muslin {
 Body build_body(const Scene& scene, const BodySettings& settings, std::vector<std::string>& warnings,
                 const Progress& progress);
 
+/// Points that are the vertices: J = 1. Prepared for the transpose.
+Embedding identity_embedding(std::size_t count);
+
 /// How full each voxel counts: its fill, or 1 if the body weighs by cells.
 std::vector<double> voxel_shares(const Body& body, const BodySettings& settings);
 

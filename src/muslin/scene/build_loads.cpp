@@ -9,6 +9,7 @@
 #include "muslin/force/point_force.hpp"
 #include "muslin/force/wind.hpp"
 #include "muslin/geometry/closest_point.hpp"
+#include "muslin/scene/build_collider.hpp"
 #include "muslin/scene/pin_sequence.hpp"
 #include "muslin/scene/select.hpp"
 
@@ -46,17 +47,33 @@ void add_gravity(Model& model, const ForceSettings& force) {
        std::make_shared<Gravity>(std::move(masses), force.value, Window{force.from, force.until})});
 }
 
+/// Of the forces on points of a rigid body, or of the one on its centre.
+std::vector<double> shares_of_corners(const Body& body, const ForceSettings& force) {
+  if (!force.where) return {0.25, 0.25, 0.25, 0.25};
+  std::vector<double> shares(4, 0.0);
+  for (const int v : select_vertices(body, *force.where, "force " + force.name))
+    for (std::size_t i = 0; i < 4; ++i) shares[i] += body.skin.weights[static_cast<std::size_t>(v)][i];
+  return shares;
+}
+
 void add_point_force(Model& model, const ForceSettings& force) {
   const Body& body = body_called(model, force.body);
-  const auto vertices = to_model(body, select_vertices(body, force.where, "force " + force.name));
+  std::vector<int> vertices;
+  std::vector<double> weights;
+  if (body.is_rigid()) {
+    vertices = to_model(body, {0, 1, 2, 3});
+    weights = shares_of_corners(body, force);
+  } else {
+    vertices = to_model(body, select_vertices(body, *force.where, "force " + force.name));
+  }
   model.loads.push_back(
       {force.name, EnergyRole::work,
-       std::make_shared<PointForce>(vertices, force.value, Window{force.from, force.until})});
+       std::make_shared<PointForce>(vertices, force.value, Window{force.from, force.until}, weights)});
 }
 
 void add_wind(Model& model, const ForceSettings& force) {
   for (const Body& body : model.bodies) {
-    if (!acts_on(force, body)) continue;
+    if (!acts_on(force, body) || !body.is_soft()) continue;
     Embedding skin = body.skin;
     for (auto& vertices : skin.vertices) {
       for (int& v : vertices) v += body.first_vertex;
@@ -76,17 +93,18 @@ void add_wind(Model& model, const ForceSettings& force) {
     wind.seed = static_cast<std::uint64_t>(force.seed);
     // Without a consistent front a face counts from both sides.
     wind.two_sided = body.sheet || body.report.flipped_edges > 0 || body.report.non_manifold_edges > 0;
-    const std::string name = model.bodies.size() > 1 ? force.name + ": " + body.name : force.name;
+    const std::string name = model.scene.bodies.size() > 1 ? force.name + ": " + body.name : force.name;
     model.loads.push_back(
         {name, EnergyRole::work,
          std::make_shared<Wind>(wind, std::move(skin), std::move(triangles), model.vertex_count())});
   }
 }
 
-/// The point of the shell nearest to `at`, carried by the corners of its triangle.
-Embedding point_of_shell(Model& model, const Body& body, const ProbeSettings& settings) {
-  const ClosestPoint nearest = ClosestPointQuery(body.mesh.positions, body.shell.triangles)(settings.at);
-  const Vec3i& triangle = body.shell.triangles[static_cast<std::size_t>(nearest.triangle)];
+/// The point of the surface nearest to `at`, carried by the corners of its triangle.
+Embedding point_of_surface(Model& model, const Body& body, const ProbeSettings& settings) {
+  const std::vector<Vec3i> triangles = triangulate(body.mesh).triangles;
+  const ClosestPoint nearest = ClosestPointQuery(body.mesh.positions, triangles)(settings.at);
+  const Vec3i& triangle = triangles[static_cast<std::size_t>(nearest.triangle)];
   Embedding point;
   point.vertices.emplace_back().fill(triangle[0]);
   point.weights.emplace_back().fill(0);
@@ -132,7 +150,9 @@ void build_pins(Model& model) {
     const Body& body = body_called(model, settings.body);
     Pin pin;
     pin.name = settings.name;
-    pin.vertices = to_model(body, select_vertices(body, settings.where, "pin " + settings.name));
+    pin.vertices =
+        to_model(body, body.is_rigid() ? std::vector<int>{0, 1, 2, 3}
+                                       : select_vertices(body, settings.where, "pin " + settings.name));
     pin.from = settings.from;
     pin.until = settings.until;
     pin.motion = settings.motion;
@@ -149,8 +169,13 @@ void build_probes(Model& model) {
     Probe probe;
     probe.name = settings.name;
     probe.body = static_cast<int>(at - model.bodies.begin());
-    if (at->is_shell()) {
-      probe.point = point_of_shell(model, *at, settings);
+    if (at->is_rigid()) {
+      probe.point = embed(at->frame, std::span(&settings.at, 1));
+      model.probes.push_back(std::move(probe));
+      continue;
+    }
+    if (!at->has_lattice()) {
+      probe.point = point_of_surface(model, *at, settings);
       model.probes.push_back(std::move(probe));
       continue;
     }

@@ -1,9 +1,13 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "muslin/scene/build_body.hpp"
+#include "muslin/scene/build_collider.hpp"
+#include "muslin/scene/build_contact.hpp"
 #include "muslin/scene/build_loads.hpp"
 #include "muslin/scene/model.hpp"
 
@@ -21,25 +25,68 @@ Progress body_progress(const Progress& whole, std::size_t index, std::size_t cou
   return part;
 }
 
-void add_vertices(Model& model, Body& body, const BodySettings& settings) {
+/// `masses` and `velocities` are those of the body's vertices.
+void add_vertices(Model& model, Body& body, const Place& place, const std::vector<double>& masses,
+                  const std::vector<Vec3>& velocities) {
   const std::size_t first = model.vertex_count(), count = static_cast<std::size_t>(body.vertex_count);
   if (first + count > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    throw Error(ErrorKind::input, settings.place, "all bodies together have more than 2³¹ vertices",
+    throw Error(ErrorKind::input, place, "all bodies together have more than 2³¹ vertices",
                 "make `voxel_width` larger or meshes coarser");
   }
   body.first_vertex = static_cast<int>(first);
-  const std::vector<double> masses = vertex_masses(body, settings);
   for (std::size_t v = 0; v < count; ++v) {
     model.rest_positions.push_back(body.rest_position(v));
+    model.velocities.push_back(velocities[v]);
     model.masses.push_back(masses[v]);
     body.statistics.mass += masses[v];
   }
 }
 
+void add_collider(Model& model, BuiltCollider built, const ColliderSettings& settings) {
+  Body& body = built.body;
+  const auto count = static_cast<std::size_t>(body.vertex_count);
+  std::vector<double> masses(count, 0.0);
+  std::vector<Vec3> velocities(count);
+  if (settings.is_free()) {
+    masses.assign(count, body.statistics.mass / static_cast<double>(count));
+    body.statistics.mass = 0;
+    const Vec3 spin = settings.angular_velocity * std::numbers::pi / 180;
+    for (std::size_t v = 0; v < count; ++v)
+      velocities[v] = settings.velocity + spin.cross(body.rest_position(v) - body.frame.centre);
+  } else {
+    const double step = model.scene.time.step();
+    built.motion.positions(step, velocities);
+    for (std::size_t v = 0; v < count; ++v) velocities[v] = (velocities[v] - built.motion.start[v]) / step;
+  }
+  add_vertices(model, body, settings.place, masses, velocities);
+  if (body.prescribed) {
+    built.motion.first = body.first_vertex;
+    model.prescribed.push_back(std::move(built.motion));
+  }
+  model.bodies.push_back(std::move(body));
+}
+
+/// Planes last, as what is shown of them depends on the others; each in its place among the bodies.
+void add_colliders(Model& model) {
+  const std::vector<ColliderSettings>& colliders = model.scene.colliders;
+  Box around;
+  for (const Body& body : model.bodies) around.extend(body.mesh.bounds());
+  std::vector<BuiltCollider> built(colliders.size());
+  for (const bool planes : {false, true}) {
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+      if ((colliders[c].shape == ColliderSettings::Shape::plane) != planes) continue;
+      built[c] = build_collider(model.scene, colliders[c], around, model.warnings);
+      if (!planes) around.extend(built[c].body.mesh.bounds());
+    }
+  }
+  for (std::size_t c = 0; c < colliders.size(); ++c) add_collider(model, std::move(built[c]), colliders[c]);
+}
+
 void warn_of_explicit_steps(Model& model) {
   if (model.scene.solver.integrator != Integrator::symplectic_euler) return;
   const double step = model.scene.time.step();
-  for (const Body& body : model.bodies) {
+  for (std::size_t b = 0; b < model.scene.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
     if (step <= body.statistics.stable_step) continue;
     model.warnings.push_back(fmt::format(
         "body {}: symplectic_euler is unstable at steps of {:.3g} s; it needs less than {:.3g} s, "
@@ -58,13 +105,16 @@ Model build_model(const Scene& scene, const Progress& progress) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Progress part = body_progress(progress, b, scene.bodies.size());
     Body body = build_body(scene, scene.bodies[b], model.warnings, part);
-    add_vertices(model, body, scene.bodies[b]);
+    const std::vector<Vec3> velocities(static_cast<std::size_t>(body.vertex_count), scene.bodies[b].velocity);
+    add_vertices(model, body, scene.bodies[b].place, vertex_masses(body, scene.bodies[b]), velocities);
     model.bodies.push_back(std::move(body));
   }
+  add_colliders(model);
   build_materials(model);
   build_forces(model);
   build_pins(model);
   build_probes(model);
+  build_contact(model);
   warn_of_explicit_steps(model);
   return model;
 }

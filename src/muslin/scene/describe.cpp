@@ -14,6 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t most_crossings = 8;  // in a text
+
 Json vector(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
@@ -25,7 +27,8 @@ std::string counted(std::size_t count, const std::string& one) { return counted(
 /// Below this symplectic_euler is stable for every body [s].
 double stable_step(const Model& model) {
   double step = std::numeric_limits<double>::infinity();
-  for (const Body& body : model.bodies) step = std::min(step, body.statistics.stable_step);
+  for (std::size_t b = 0; b < model.scene.bodies.size(); ++b)
+    step = std::min(step, model.bodies[b].statistics.stable_step);
   return step;
 }
 
@@ -71,9 +74,59 @@ Json body_json(const Body& body, const BodySettings& settings) {
 
 Json bodies_json(const Model& model) {
   Json bodies = Json::array();
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+  for (std::size_t b = 0; b < model.scene.bodies.size(); ++b)
     bodies.push_back(body_json(model.bodies[b], model.scene.bodies[b]));
   return bodies;
+}
+
+/// How a collider moves.
+std::string movement(const ColliderSettings& settings) {
+  if (settings.is_free()) return "rigid body";
+  return !settings.sequence.empty() ? "sequence" : settings.motion.keys.empty() ? "fixed" : "keyframed";
+}
+
+Json colliders_json(const Model& model) {
+  Json colliders = Json::array();
+  for (std::size_t c = 0; c < model.scene.colliders.size(); ++c) {
+    const ColliderSettings& settings = model.scene.colliders[c];
+    const Body& body = model.collider(c);
+    Json json = {{"name", body.name},
+                 {"shape", name_of(collider_shape_names(), settings.shape)},
+                 {"movement", movement(settings)}};
+    if (settings.is_free()) json["mass"] = body.statistics.mass;
+    json["vertices"] = body.mesh.vertex_count();
+    json["triangles"] = body.statistics.triangles;
+    colliders.push_back(json);
+  }
+  return colliders;
+}
+
+/// Null where nothing can touch.
+Json contact_json(const Model& model) {
+  if (!model.contact) return nullptr;
+  return {{"distance", model.contact->distance},
+          {"friction", model.contact->friction},
+          {"mode", name_of(contact_mode_names(), model.contact->mode)},
+          {"triangles", model.contact->surface->triangles().size()}};
+}
+
+Json crossings_json(const Model& model, std::span<const Crossing> crossings) {
+  Json list = Json::array();
+  for (const Crossing& c : crossings) {
+    const ContactModel& contact = *model.contact;
+    const auto name = [&](int body) { return contact.names[static_cast<std::size_t>(body)]; };
+    const auto face = [&](int triangle) {
+      return triangle < 0 ? Json(nullptr) : Json(contact.faces[static_cast<std::size_t>(triangle)]);
+    };
+    const char* kind = c.kind == Crossing::Kind::crossing    ? "crossing"
+                       : c.kind == Crossing::Kind::too_close ? "too close"
+                                                             : "beneath";
+    list.push_back({{"kind", kind},
+                    {"bodies", {name(c.first_body), name(c.second_body)}},
+                    {"faces", {face(c.first_triangle), face(c.second_triangle)}},
+                    {"at", vector(c.at)}});
+  }
+  return list;
 }
 
 std::string as_text(const Json& json) {
@@ -115,9 +168,23 @@ std::string body_text(const Body& body, const BodySettings& settings) {
   return text;
 }
 
+std::string collider_text(const Model& model, std::size_t index) {
+  const ColliderSettings& settings = model.scene.colliders[index];
+  const Body& body = model.collider(index);
+  std::string text = fmt::format("collider {}: {}, {}", body.name,
+                                 settings.shape == ColliderSettings::Shape::mesh
+                                     ? settings.mesh
+                                     : name_of(collider_shape_names(), settings.shape),
+                                 movement(settings));
+  if (settings.is_free()) text += fmt::format(" of {:.6g} kg", body.statistics.mass);
+  if (settings.shape == ColliderSettings::Shape::mesh)
+    text += ", " + counted(static_cast<std::size_t>(body.statistics.triangles), "triangle");
+  return text + "\n";
+}
+
 }  // namespace
 
-std::string describe_json(const Model& model) {
+std::string describe_json(const Model& model, std::span<const Crossing> crossings) {
   const Scene& scene = model.scene;
   Json json;
   json["title"] = scene.title;
@@ -128,6 +195,9 @@ std::string describe_json(const Model& model) {
                   {"stable_step", finite(stable_step(model))}};
   json["integrator"] = name_of(integrator_names(), scene.solver.integrator);
   json["bodies"] = bodies_json(model);
+  json["colliders"] = colliders_json(model);
+  json["contact"] = contact_json(model);
+  json["crossings"] = crossings_json(model, crossings);
   json["pins"] = Json::array();
   for (const Pin& pin : model.pins) {
     json["pins"].push_back({{"name", pin.name}, {"vertices", pin.vertices.size()}});
@@ -142,13 +212,23 @@ std::string describe_json(const Model& model) {
   return as_text(json);
 }
 
-std::string statistics_json(const Model& model) { return as_text(Json({{"bodies", bodies_json(model)}})); }
+std::string statistics_json(const Model& model) {
+  Json json = {{"bodies", bodies_json(model)}};
+  json["colliders"] = colliders_json(model);
+  return as_text(json);
+}
 
-std::string describe_text(const Model& model) {
+std::string describe_text(const Model& model, std::span<const Crossing> crossings) {
   const Scene& scene = model.scene;
   const std::int64_t steps = std::int64_t{scene.time.frames()} * scene.time.steps_per_frame;
   std::string text = scene.title + "\n";
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) text += body_text(model.bodies[b], scene.bodies[b]);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) text += body_text(model.bodies[b], scene.bodies[b]);
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c) text += collider_text(model, c);
+  if (model.contact) {
+    text += fmt::format("contact: {}, within {:.3g} m, friction {:.3g}\n",
+                        name_of(contact_mode_names(), model.contact->mode), model.contact->distance,
+                        model.contact->friction);
+  }
   for (const Pin& pin : model.pins) {
     text +=
         fmt::format("pin {}: {}\n", pin.name, counted(pin.vertices.size(), "held vertex", "held vertices"));
@@ -159,6 +239,11 @@ std::string describe_text(const Model& model) {
                       name_of(integrator_names(), scene.solver.integrator));
   text += fmt::format(" (symplectic_euler would need steps below {:.3g} s)\n", stable_step(model));
   for (const std::string& warning : model.warnings) text += "warning: " + warning + "\n";
+  if (!crossings.empty()) text += counted(crossings.size(), "place", "places") + " where surfaces cross:\n";
+  for (std::size_t i = 0; i < std::min(crossings.size(), most_crossings); ++i)
+    text += "  " + describe(*model.contact, crossings[i]) + "\n";
+  if (crossings.size() > most_crossings)
+    text += fmt::format("  and {} more\n", crossings.size() - most_crossings);
   return text;
 }
 

@@ -1,21 +1,26 @@
 // What a scene or mesh is and what will be built from it: `muslin check` and stats.json.
 #pragma once
 
+#include <span>
 #include <string>
 
+#include "muslin/contact/crossings.hpp"
 #include "muslin/geometry/inspect.hpp"
 #include "muslin/scene/model.hpp"
 
 namespace muslin {
 
 /// JSON: `title`, `time`, `bodies` (a list, each with `name`, `vertices`, `voxels`, `tetrahedra`,
-/// `springs.edge`, `.face_diagonal`, `.body_diagonal`, `mass`, `coverage`, `contour_distance`, …), `pins`,
+/// `springs.edge`, `.face_diagonal`, `.body_diagonal`, `mass`, `coverage`, `contour_distance`, …),
+/// `colliders` (each with `name`, `shape`, `movement`, …), `contact` (null if nothing can touch), `pins`,
 /// `forces`, `probes`, `warnings`.
-std::string describe_json(const Model& model);
-/// Its `bodies` alone: stats.json.
+/// `crossings` of its start become a list of the same name, each with `kind`, `bodies`, `faces` (counted from
+/// 0 in the mesh, null of a plane) and `at`.
+std::string describe_json(const Model& model, std::span<const Crossing> crossings = {});
+/// Its `bodies` and `colliders` alone: stats.json.
 std::string statistics_json(const Model& model);
-/// The same to read.
-std::string describe_text(const Model& model);
+/// The same to read; of many crossings the first eight.
+std::string describe_text(const Model& model, std::span<const Crossing> crossings = {});
 
 /// Of a bare mesh file; `file` is the name to print.
 std::string describe_json(const MeshReport& report, const std::string& file);

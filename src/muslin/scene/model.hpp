@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "muslin/constraint/pin.hpp"
+#include "muslin/constraint/prescribed.hpp"
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/core/progress.hpp"
+#include "muslin/geometry/affine_frame.hpp"
 #include "muslin/geometry/inspect.hpp"
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/lattice/embedding.hpp"
@@ -33,8 +35,9 @@ struct BodyStatistics {
   double stable_step = 0;  ///< below this symplectic_euler is stable at rest [s]; infinity without springs
 };
 
-/// A body of either model. A shell has neither solid, lattice, springs nor contour; its vertices are those of
-/// the mesh, in the same order, and so is its skin.
+/// A body of any model. Only a lattice has solid, lattice, springs and contour. The vertices of a shell or a
+/// sequence are those of the mesh, in the same order, and so is its skin; those of a rigid body are the four
+/// corners of its frame.
 struct Body {
   std::string name;
   BodyModel model = BodyModel::lattice;
@@ -48,20 +51,26 @@ struct Body {
   Lattice lattice;
   Springs springs;
   Shell shell;
-  Embedding skin;  ///< of mesh.positions
+  AffineFrame frame;        ///< of a rigid body, at the start
+  bool prescribed = false;  ///< moves as it is told, not as it is pushed; it has no mass
+  double mean_edge = 0;     ///< of a collider's mesh [m]
+  Embedding skin;           ///< of mesh.positions
   Contour contour;
   int first_vertex =
       0;  ///< the body's vertices are first_vertex … first_vertex + vertex_count − 1 of the state
   int vertex_count = 0;
   BodyStatistics statistics;
 
+  bool has_lattice() const { return model == BodyModel::lattice; }
   bool is_shell() const { return model == BodyModel::shell; }
+  bool is_rigid() const { return model == BodyModel::rigid; }
+  bool is_soft() const { return has_lattice() || is_shell(); }
   /// Of the vertex counted within the body, at the start [m].
   Vec3 rest_position(std::size_t v) const {
-    return is_shell() ? mesh.positions[v] : lattice.rest_position(v);
+    return has_lattice() ? lattice.rest_position(v) : is_rigid() ? frame.corners()[v] : mesh.positions[v];
   }
-  /// Typical distance of neighbouring vertices: the voxel width, or the mean edge of a shell [m].
-  double spacing() const { return is_shell() ? shell.mean_edge : lattice.width; }
+  /// Typical distance of neighbouring vertices: the voxel width, or the mean edge of the mesh [m].
+  double spacing() const { return has_lattice() ? lattice.width : is_shell() ? shell.mean_edge : mean_edge; }
 };
 
 /// How a potential enters the energy balance.
@@ -91,17 +100,21 @@ struct Probe {
 
 struct Model {
   Scene scene;
-  std::vector<Body> bodies;
-  std::vector<Vec3> rest_positions;  ///< #V by 3, all bodies one after the other [m]
-  std::vector<double> masses;        ///< #V [kg]
+  std::vector<Body> bodies;          ///< those of the scene in its order, then its colliders in theirs
+  std::vector<Vec3> rest_positions;  ///< #V by 3, all bodies one after the other, at the start [m]
+  std::vector<Vec3> velocities;      ///< #V by 3, at the start [m/s]; empty: at rest
+  std::vector<double> masses;        ///< #V [kg]; 0 of prescribed vertices
   std::vector<PotentialTerm> potentials;
   std::vector<LoadTerm> loads;
   std::vector<Pin> pins;
+  std::vector<Prescribed> prescribed;
   std::vector<Probe> probes;
   std::shared_ptr<const ContactModel> contact;  ///< null if nothing can touch
-  std::vector<std::string> warnings;  ///< what the user should know before a run
+  std::vector<std::string> warnings;            ///< what the user should know before a run
 
   std::size_t vertex_count() const { return rest_positions.size(); }
+  /// The body of a collider, counted among the colliders of the scene.
+  const Body& collider(std::size_t index) const { return bodies[scene.bodies.size() + index]; }
   ConstVectors of(const Body& body, ConstVectors all) const {
     return all.subspan(static_cast<std::size_t>(body.first_vertex),
                        static_cast<std::size_t>(body.vertex_count));

@@ -8,7 +8,15 @@ const std::vector<std::string>& integrator_names() {
   return names;
 }
 const std::vector<std::string>& body_model_names() {
-  static const std::vector<std::string> names = {"lattice", "shell"};
+  static const std::vector<std::string> names = {"lattice", "shell", "rigid", "sequence"};
+  return names;
+}
+const std::vector<std::string>& collider_shape_names() {
+  static const std::vector<std::string> names = {"plane", "sphere", "capsule", "box", "mesh"};
+  return names;
+}
+const std::vector<std::string>& contact_mode_names() {
+  static const std::vector<std::string> names = {"fast", "converged"};
   return names;
 }
 const std::vector<std::string>& voxel_rule_names() {

@@ -9,6 +9,7 @@
 #include "muslin/material/lattice_moduli.hpp"
 #include "muslin/material/material_table.hpp"
 #include "muslin/scene/names.hpp"
+#include "muslin/scene/read_parts.hpp"
 #include "muslin/scene/vocabulary.hpp"
 
 namespace muslin {
@@ -119,24 +120,16 @@ Material read_body_material(const TomlTable& body, BodyModel model, Bracing brac
     throw body.error("material", "`material` of " + body.title() + " is neither a name nor a table",
                      fmt::format("write material = \"cotton\" or a table {{ … }} with {}", quantities));
   }
-  refuse_reserved_keys(*value);
   const std::string title = "`material` of " + body.title();
   if (shell) return shell_material(TomlTable(*value, title, known_keys("body.material of a shell")), folder);
   return lattice_material(TomlTable(*value, title, known_keys("body.material")), bracing, folder);
 }
 
-Vec3 read_scale(const TomlTable& body) {
-  const TomlValue* value = body.find("scale");
-  if (value == nullptr) return Vec3::Ones();
-  const std::string name = "`scale` of " + body.title();
-  if (value->type == TomlValue::Type::array) return to_vector(*value, name, "", Range::positive());
-  return Vec3::Constant(to_number(*value, name, "", Range::positive()));
-}
-
 BodyModel read_model(const TomlTable& body) {
-  const auto model = static_cast<BodyModel>(body.choice("model", body_model_names(), 0));
-  static const std::vector<std::string> of_lattices = {
-      "voxel_width", "voxels", "threshold", "bracing", "mass", "thickness", "boundary_springs"};
+  const auto& names = body_model_names();
+  const auto model = static_cast<BodyModel>(body.choice("model", {names[0], names[1]}, 0));
+  static const std::vector<std::string> of_lattices = {"voxel_width", "voxels", "threshold",
+                                                       "bracing",     "mass",   "boundary_springs"};
   static const std::vector<std::string> of_shells = {"rest_mesh", "warp"};
   const bool shell = model == BodyModel::shell;
   for (const std::string& key : shell ? of_lattices : of_shells) {
@@ -147,14 +140,8 @@ BodyModel read_model(const TomlTable& body) {
   return model;
 }
 
-std::string read_path(const TomlTable& body, const char* key) {
-  const std::string path = body.string(key);
-  if (path.empty() || path.find('\0') != std::string::npos)
-    throw body.error(key, fmt::format("`{}` is no path", key), "name a mesh file");
-  return path;
-}
-
 void read_shell_settings(const TomlTable& table, BodySettings& body) {
+  if (table.has("thickness")) body.shell_thickness = table.number("thickness", "m", Range::non_negative());
   if (table.has("rest_mesh")) {
     body.rest_mesh = read_path(table, "rest_mesh");
     body.rest_mesh_place = table.place("rest_mesh");
@@ -183,30 +170,14 @@ void read_lattice_settings(const TomlTable& table, BodySettings& body, std::vect
 
 }  // namespace
 
-void require_name(const std::string& name, const Place& place) {
-  const bool bad = name.empty() || name.size() > 100 || name.front() == '.' ||
-                   name.find_first_of("/\\:*?\"<>|,") != std::string::npos ||
-                   std::any_of(name.begin(), name.end(),
-                               [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; });
-  if (bad) {
-    throw Error(ErrorKind::input, place, "`" + name.substr(0, 40) + "` cannot be a name",
-                "use 1 to 100 letters, digits, `_`, `-`, `.` or spaces, not starting with a dot");
-  }
-}
-
 BodySettings read_body(const TomlValue& value, std::size_t index, const std::filesystem::path& folder,
                        std::vector<std::string>& warnings) {
-  refuse_reserved_keys(value);
-  const TomlValue* given = value.find("name");
-  const bool has_name = given != nullptr && given->type == TomlValue::Type::string;
-  const TomlTable table(value, "[[body]] " + (has_name ? given->string : std::to_string(index)),
-                        known_keys("body"));
+  const TomlTable table(value, title_of("body", value, index), known_keys("body"));
   BodySettings body;
   body.place = table.place();
   body.mesh = read_path(table, "mesh");
   body.mesh_place = table.place("mesh");
-  body.name = table.string("name", std::filesystem::path(body.mesh).stem().string());
-  require_name(body.name, table.place("name"));
+  body.name = read_name(table, std::filesystem::path(body.mesh).stem().string());
   body.model = read_model(table);
   if (body.model == BodyModel::shell) {
     read_shell_settings(table, body);
@@ -226,12 +197,9 @@ BodySettings read_body(const TomlValue& value, std::size_t index, const std::fil
   body.rotate = table.vector("rotate", "degrees", Vec3::Zero());
   body.scale = read_scale(table);
   body.velocity = table.vector("velocity", "m/s", Vec3::Zero());
-  if (table.has("colour")) {
-    body.colour = table.vector("colour", "sRGB 0 to 1");
-    if (body.colour->minCoeff() < 0 || body.colour->maxCoeff() > 1)
-      throw table.error("colour", "a colour is red, green and blue from 0 to 1",
-                        "write for example [0.2, 0.5, 0.2]");
-  }
+  body.contact = table.boolean("contact", true);
+  body.self_contact = table.boolean("self_contact", true);
+  body.colour = read_colour(table);
   return body;
 }
 

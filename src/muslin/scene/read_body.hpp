@@ -16,8 +16,4 @@ namespace muslin {
 BodySettings read_body(const TomlValue& value, std::size_t index, const std::filesystem::path& folder,
                        std::vector<std::string>& warnings);
 
-/// Names of bodies, pins, … end up in file names and paths: not empty, no separators or control characters.
-/// Throws Error(input) if `name` is no such name.
-void require_name(const std::string& name, const Place& place);
-
 }  // namespace muslin

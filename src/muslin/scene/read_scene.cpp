@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <set>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -9,8 +9,9 @@
 #include "muslin/core/toml_table.hpp"
 #include "muslin/scene/names.hpp"
 #include "muslin/scene/overrides.hpp"
-#include "muslin/scene/placement.hpp"
 #include "muslin/scene/read_body.hpp"
+#include "muslin/scene/read_collider.hpp"
+#include "muslin/scene/read_parts.hpp"
 #include "muslin/scene/read_selection.hpp"
 #include "muslin/scene/resolved.hpp"
 #include "muslin/scene/scene.hpp"
@@ -62,54 +63,54 @@ const std::vector<TomlValue>& entries(const TomlTable& top, const std::string& k
   return value->items;
 }
 
-std::string title_of(const std::string& kind, const TomlValue& value, std::size_t index) {
-  const TomlValue* name = value.find("name");
-  const bool has_name = name != nullptr && name->type == TomlValue::Type::string;
-  return "[[" + kind + "]] " + (has_name ? name->string : std::to_string(index));
-}
-
-/// Names are unique among their kind, as files and the command line refer to them.
+/// Names are unique among their kind, and those of bodies and colliders among both, as files and the command
+/// line refer to them.
 class UniqueNames {
  public:
-  explicit UniqueNames(std::string kind) : kind_(std::move(kind)) {}
-  void add(const std::string& name, const Place& place) {
-    if (names_.insert(name).second) return;
-    throw Error(ErrorKind::input, place, "there are two of [[" + kind_ + "]] called `" + name + "`",
+  void add(const std::string& kind, const std::string& name, const Place& place) {
+    const auto [at, is_new] = kinds_.try_emplace(name, kind);
+    if (is_new) return;
+    const std::string both =
+        at->second == kind ? "two of [[" + kind + "]]" : "a [[" + at->second + "]] and a [[" + kind + "]]";
+    throw Error(ErrorKind::input, place, "there are " + both + " called `" + name + "`",
                 "give each a `name` of its own");
   }
 
  private:
-  std::string kind_;
-  std::set<std::string> names_;
+  std::map<std::string, std::string> kinds_;
 };
 
-std::string read_name(const TomlTable& table, const std::string& fallback) {
-  const std::string name = table.string("name", fallback);
-  require_name(name, table.place("name"));
-  return name;
-}
-
-std::vector<std::string> body_names(const Scene& scene) {
+/// Bodies, and colliders with a density.
+std::vector<std::string> movable_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const BodySettings& body : scene.bodies) names.push_back(body.name);
+  for (const ColliderSettings& collider : scene.colliders)
+    if (collider.is_free()) names.push_back(collider.name);
   return names;
+}
+
+bool is_rigid(const Scene& scene, const std::string& name) {
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                     [&](const ColliderSettings& collider) { return collider.name == name; });
 }
 
 /// The body that the table names; if it names none, the only one, or, if `all_allowed`, "" for all.
 std::string read_body_name(const TomlTable& table, const Scene& scene, bool all_allowed) {
-  const std::vector<std::string> names = body_names(scene);
+  const std::vector<std::string> names = movable_names(scene);
   if (!table.has("body")) {
     if (all_allowed) return {};
-    if (names.size() == 1) return names.front();
+    if (scene.bodies.size() == 1 || names.size() == 1) return names.front();
     throw Error(ErrorKind::input, table.place(),
                 fmt::format("{} does not say which of the {} bodies it means", table.title(), names.size()),
                 "add `body = …`, one of " + name_list(names));
   }
   const std::string name = table.string("body");
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    throw table.error("body", "there is no body `" + name + "`", name_advice(name, names));
+  if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  if (is_rigid(scene, name)) {
+    throw table.error("body", "the collider `" + name + "` has no mass, so nothing holds or pushes it",
+                      "give it a `density`, or move it by `keyframes` of its own");
   }
-  return name;
+  throw table.error("body", "there is no body `" + name + "`", name_advice(name, names));
 }
 
 void read_times(const TomlTable& table, double& from, double& until) {
@@ -121,36 +122,22 @@ void read_times(const TomlTable& table, double& from, double& until) {
   }
 }
 
-/// The tables under `keyframes`, each with a time after the one before.
-template <class Read>
-void read_keyframes(const TomlTable& owner, const std::vector<std::string>& known, const Read& read) {
-  const auto* items = owner.array("keyframes", "tables such as { time = 0, … }");
-  if (items == nullptr) return;
-  if (items->empty()) throw owner.error("keyframes", "`keyframes` is empty", "take it out or give keys");
-  double last = -std::numeric_limits<double>::infinity();
-  for (const TomlValue& item : *items) {
-    const TomlTable key(item, "a keyframe of " + owner.title(), known);
-    const double time = key.number("time", "s", Range::any());
-    if (time <= last) {
-      throw key.error("time",
-                      fmt::format("the keyframe at {} s does not come after that at {} s", time, last),
-                      "order keyframes by time, one at a time");
-    }
-    last = time;
-    read(key, time);
-  }
-}
-
 PinSettings read_pin(const TomlValue& value, std::size_t index, const Scene& scene) {
   const TomlTable table(value, title_of("pin", value, index), known_keys("pin"));
   PinSettings pin;
   pin.place = table.place();
   pin.name = read_name(table, fmt::format("pin{}", index));
   pin.body = read_body_name(table, scene, false);
-  pin.where = read_selection(table);
+  if (!is_rigid(scene, pin.body)) {
+    pin.where = read_selection(table);
+  } else if (table.has("where")) {
+    throw table.error("where", "a rigid body is held as a whole", "take `where` out");
+  }
   read_times(table, pin.from, pin.until);
   if (table.has("pivot")) pin.pivot = table.vector("pivot", "m");
   if (table.has("sequence")) {
+    if (is_rigid(scene, pin.body))
+      throw table.error("sequence", "a rigid body does not follow a sequence", "move it by `keyframes`");
     pin.sequence = table.string("sequence");
     pin.sequence_place = table.place("sequence");
     for (const char* other : {"keyframes", "pivot"}) {
@@ -159,10 +146,7 @@ PinSettings read_pin(const TomlValue& value, std::size_t index, const Scene& sce
                           "keep one of them");
     }
   }
-  read_keyframes(table, known_keys("pin.keyframes"), [&](const TomlTable& key, double time) {
-    pin.motion.keys.push_back({time, key.vector("translate", "m", Vec3::Zero()),
-                               rotation_from_degrees(key.vector("rotate", "degrees", Vec3::Zero()))});
-  });
+  pin.motion.keys = read_motion(table, "pin.keyframes");
   return pin;
 }
 
@@ -199,7 +183,11 @@ ForceSettings read_force(const TomlValue& value, std::size_t index, const Scene&
     const bool standard = force.type == ForceSettings::Type::gravity && !table.has(key);
     force.value.keys.push_back({0, standard ? Vec3(0, -9.8, 0) : table.vector(key, unit)});
   }
-  if (force.type == ForceSettings::Type::point) force.where = read_selection(table);
+  const bool rigid = is_rigid(scene, force.body);
+  if (force.type == ForceSettings::Type::point && (!rigid || table.has("where")))
+    force.where = read_selection(table);
+  if (force.type == ForceSettings::Type::wind && rigid)
+    throw table.error("body", "wind does not blow on rigid bodies", "push it by a point force");
   if (force.type == ForceSettings::Type::wind) {
     force.air_density = table.number("air_density", "kg/m³", {0, 1e5, false}, force.air_density);
     force.drag = table.number("drag", "", {0, 1e3, false}, force.drag);
@@ -216,18 +204,19 @@ ProbeSettings read_probe(const TomlValue& value, std::size_t index, const Scene&
   ProbeSettings probe;
   probe.place = table.place();
   probe.name = read_name(table, fmt::format("probe{}", index));
-  probe.body = read_body_name(table, scene, false);
+  const bool of_collider = table.has("body") && is_rigid(scene, table.string("body"));
+  probe.body = of_collider ? table.string("body") : read_body_name(table, scene, false);
   probe.at = table.vector("at", "m");
   return probe;
 }
 
 template <class Settings, class Read>
-void read_list(const TomlTable& top, const std::string& kind, std::vector<Settings>& list, const Read& read) {
-  UniqueNames names(kind);
+void read_list(const TomlTable& top, const std::string& kind, UniqueNames& names, std::vector<Settings>& list,
+               const Read& read) {
   for (const TomlValue& value : entries(top, kind)) {
     list.push_back(read(value, list.size()));
     const TomlValue* name = value.find("name");
-    names.add(list.back().name, name == nullptr ? value.place : name->place);
+    names.add(kind, list.back().name, name == nullptr ? value.place : name->place);
   }
 }
 
@@ -241,7 +230,6 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file,
                   const std::vector<std::string>& overrides) {
   TomlValue root = parse_toml(text, file.string());
   for (const std::string& setting : overrides) apply_override(root, setting);
-  refuse_reserved_keys(root);
   root.place = {file.string(), 0, 0};
   const TomlTable top(root, "the scene", known_keys(""));
 
@@ -251,18 +239,21 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file,
   scene.title = top.string("title", file.stem().string());
   scene.time = read_time(top);
   scene.solver = read_solver(top);
-  read_list(top, "body", scene.bodies, [&](const TomlValue& value, std::size_t index) {
+  UniqueNames bodies, pins, forces, probes;
+  read_list(top, "body", bodies, scene.bodies, [&](const TomlValue& value, std::size_t index) {
     return read_body(value, index, file.parent_path(), scene.warnings);
   });
-  if (scene.bodies.empty()) {
+  read_list(top, "collider", bodies, scene.colliders, read_collider);
+  if (movable_names(scene).empty()) {
     throw Error(ErrorKind::input, root.place, "the scene has no body",
                 "add a [[body]] with `mesh`, `material` and `voxel_width`, or `model = \"shell\"`");
   }
-  read_list(top, "pin", scene.pins,
+  scene.contact = read_contact(top);
+  read_list(top, "pin", pins, scene.pins,
             [&](const TomlValue& value, std::size_t index) { return read_pin(value, index, scene); });
-  read_list(top, "force", scene.forces,
+  read_list(top, "force", forces, scene.forces,
             [&](const TomlValue& value, std::size_t index) { return read_force(value, index, scene); });
-  read_list(top, "probe", scene.probes,
+  read_list(top, "probe", probes, scene.probes,
             [&](const TomlValue& value, std::size_t index) { return read_probe(value, index, scene); });
   scene.resolved = resolved_json(scene);
   return scene;

@@ -1,6 +1,7 @@
 #include "muslin/scene/read_selection.hpp"
 
 #include "muslin/core/nearest_name.hpp"
+#include "muslin/scene/read_parts.hpp"
 #include "muslin/scene/vocabulary.hpp"
 
 namespace muslin {
@@ -27,12 +28,7 @@ Selection::BoxShape read_box(const TomlTable& where) {
 }
 
 Selection::PlaneShape read_plane(const TomlTable& table) {
-  Selection::PlaneShape plane{table.vector("point", "m"), table.vector("normal", ""),
-                              optional_distance(table)};
-  const double length = plane.normal.stableNorm();
-  if (!(length > 0)) throw table.error("normal", "`normal` has no direction", "give for example [1, 0, 0]");
-  plane.normal /= length;
-  return plane;
+  return {table.vector("point", "m"), read_direction(table, "normal", "[1, 0, 0]"), optional_distance(table)};
 }
 
 Selection::LineShape read_line(const TomlTable& table) {

@@ -75,6 +75,7 @@ void add_lattice(const BodySettings& b, Json& json) {
 }
 
 void add_shell(const BodySettings& b, Json& json) {
+  if (b.shell_thickness) json["thickness"] = *b.shell_thickness;
   if (!b.rest_mesh.empty()) json["rest_mesh"] = b.rest_mesh;
   if (b.warp) json["warp"] = vector(*b.warp);
   json["material"] = shell_material(b.material);
@@ -91,8 +92,62 @@ Json body(const BodySettings& b) {
   json["rotate"] = vector(b.rotate);
   json["scale"] = vector(b.scale);
   json["velocity"] = vector(b.velocity);
+  json["contact"] = b.contact;
+  json["self_contact"] = b.self_contact;
   if (b.colour) json["colour"] = vector(*b.colour);
   return json;
+}
+
+Json keyframes(const Motion& motion) {
+  Json json = Json::array();
+  for (const Motion::Key& key : motion.keys) {
+    json.push_back({{"time", key.time},
+                    {"translate", vector(key.translate)},
+                    {"quaternion", {key.rotate.w(), key.rotate.x(), key.rotate.y(), key.rotate.z()}}});
+  }
+  return json;
+}
+
+void add_shape(const ColliderSettings& c, Json& json) {
+  using Shape = ColliderSettings::Shape;
+  if (c.shape == Shape::plane || c.shape == Shape::sphere || c.shape == Shape::box)
+    json["center"] = vector(c.center);
+  if (c.shape == Shape::plane) json["normal"] = vector(c.normal);
+  if (c.shape == Shape::capsule) json["points"] = {vector(c.points[0]), vector(c.points[1])};
+  if (c.shape == Shape::sphere || c.shape == Shape::capsule) json["radius"] = c.radius;
+  if (c.shape == Shape::box) json["size"] = vector(c.size);
+  if (c.shape == Shape::mesh) {
+    json["mesh"] = c.mesh;
+    json["translate"] = vector(c.translate);
+  }
+  if (c.shape == Shape::box || c.shape == Shape::mesh) json["rotate"] = vector(c.rotate);
+  if (c.shape == Shape::mesh) json["scale"] = vector(c.scale);
+}
+
+Json collider(const ColliderSettings& c) {
+  Json json = {{"name", c.name}, {"shape", name_of(collider_shape_names(), c.shape)}};
+  add_shape(c, json);
+  if (c.is_free()) {
+    json["density"] = *c.density;
+    json["velocity"] = vector(c.velocity);
+    json["angular_velocity"] = vector(c.angular_velocity);
+  } else {
+    if (!c.sequence.empty()) json["sequence"] = c.sequence;
+    if (c.frame_rate) json["frame_rate"] = *c.frame_rate;
+    if (c.start) json["start"] = *c.start;
+    if (c.pivot) json["pivot"] = vector(*c.pivot);
+    json["keyframes"] = keyframes(c.motion);
+  }
+  json["contact"] = c.contact;
+  if (c.colour) json["colour"] = vector(*c.colour);
+  return json;
+}
+
+/// The contact distance is null where it is chosen from the bodies.
+Json contact(const ContactSettings& c) {
+  return {{"distance", c.distance ? Json(*c.distance) : Json(nullptr)},
+          {"friction", c.friction},
+          {"mode", name_of(contact_mode_names(), c.mode)}};
 }
 
 Json pin(const PinSettings& p) {
@@ -101,20 +156,14 @@ Json pin(const PinSettings& p) {
   json["until"] = number(p.until);
   if (p.pivot) json["pivot"] = vector(*p.pivot);
   if (!p.sequence.empty()) json["sequence"] = p.sequence;
-  json["keyframes"] = Json::array();
-  for (const Motion::Key& key : p.motion.keys) {
-    json["keyframes"].push_back(
-        {{"time", key.time},
-         {"translate", vector(key.translate)},
-         {"quaternion", {key.rotate.w(), key.rotate.x(), key.rotate.y(), key.rotate.z()}}});
-  }
+  json["keyframes"] = keyframes(p.motion);
   return json;
 }
 
 Json force(const ForceSettings& f) {
   Json json = {{"name", f.name}, {"type", name_of(force_type_names(), f.type)}};
   json["body"] = f.body.empty() ? Json(nullptr) : Json(f.body);
-  if (f.type == ForceSettings::Type::point) json["where"] = selection(f.where);
+  if (f.where) json["where"] = selection(*f.where);
   if (f.value.keys.size() == 1) {
     json[name_of(force_value_names(), f.type)] = vector(f.value.keys.front().value);
   } else {
@@ -156,6 +205,8 @@ std::string resolved_json(const Scene& scene) {
                     {"max_iterations", scene.solver.max_iterations},
                     {"linear_tolerance", scene.solver.linear_tolerance}};
   json["body"] = list(scene.bodies, body);
+  json["collider"] = list(scene.colliders, collider);
+  json["contact"] = contact(scene.contact);
   json["pin"] = list(scene.pins, pin);
   json["force"] = list(scene.forces, force);
   json["probe"] = list(scene.probes, [](const ProbeSettings& p) {

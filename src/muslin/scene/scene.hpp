@@ -2,6 +2,7 @@
 // file, so that later errors can point at it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "muslin/constraint/pin.hpp"
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/force/keyed.hpp"
@@ -31,8 +33,10 @@ struct TimeSettings {
 
 /// What a body's degrees of freedom are.
 enum class BodyModel {
-  lattice,  ///< voxels filled into the mesh, with springs
-  shell,    ///< the mesh itself, as thin cloth
+  lattice,   ///< voxels filled into the mesh, with springs
+  shell,     ///< the mesh itself, as thin cloth
+  rigid,     ///< a collider: four points that carry it
+  sequence,  ///< a collider whose vertices move along samples: the mesh itself
 };
 
 /// Where in a body: the vertices (of its lattice, or of its mesh if it is a shell) that satisfy every
@@ -72,7 +76,8 @@ struct BodySettings {
   Place mesh_place;
   BodyModel model = BodyModel::lattice;
   // Of shells.
-  std::string rest_mesh;  ///< path of the shape without stress; empty: `mesh`
+  std::optional<double> shell_thickness;  ///< as contact sees it [m]; default: see build_contact.hpp
+  std::string rest_mesh;                  ///< path of the shape without stress; empty: `mesh`
   Place rest_mesh_place;
   std::optional<Vec3>
       warp;  ///< direction of the warp threads; default: along the texture's u, or the longest side
@@ -87,13 +92,53 @@ struct BodySettings {
   Vec3 rotate = Vec3::Zero();     ///< Euler angles about x, then y, then z [degrees]
   Vec3 scale = Vec3::Ones();
   Vec3 velocity = Vec3::Zero();  ///< initial [m/s]
+  bool contact = true;           ///< touches other bodies, colliders and itself
+  bool self_contact = true;      ///< touches itself
   std::optional<Vec3> colour;    ///< in pictures, sRGB 0…1; default: one of a palette
+  Place place;
+};
+
+/// What stands or moves in the way of bodies; with a density it is a rigid body itself.
+struct ColliderSettings {
+  enum class Shape { plane, sphere, capsule, box, mesh } shape = Shape::plane;
+  std::string name;
+  Vec3 center = Vec3::Zero();    ///< of a sphere or box; a point of a plane [m]
+  double radius = 0;             ///< of a sphere or capsule [m]
+  Vec3 normal = Vec3(0, 1, 0);   ///< of a plane, towards the free side, of length 1
+  Vec3 size = Vec3::Ones();      ///< of a box [m]
+  std::array<Vec3, 2> points{};  ///< the ends of a capsule's axis [m]
+  std::string mesh;              ///< path as written; relative to the scene file
+  Place mesh_place;
+  Vec3 translate = Vec3::Zero();  ///< of a mesh [m]
+  Vec3 rotate = Vec3::Zero();     ///< of a mesh, or of a box about its centre [degrees], as of a body
+  Vec3 scale = Vec3::Ones();      ///< of a mesh
+  Motion motion;                  ///< away from where the shape stands
+  std::optional<Vec3> pivot;      ///< of the motion [m]; default: the middle of the shape
+  std::string sequence;           ///< path of the samples that a mesh follows; empty: none
+  Place sequence_place;
+  std::optional<double> frame_rate;  ///< of the samples, but of those of an .mdd [1/s]; default: the scene's
+  std::optional<double> start;    ///< when the first sample is shown [s]; default: what the file says, or 0
+  std::optional<double> density;  ///< [kg/m³]; given: it falls, rolls and is pushed
+  Vec3 velocity = Vec3::Zero();   ///< initial, with a density [m/s]
+  Vec3 angular_velocity = Vec3::Zero();  ///< initial, with a density, about its centre of mass [degrees/s]
+  bool contact = true;
+  std::optional<Vec3> colour;  ///< in pictures, sRGB 0…1; default: grey
+  Place place;
+
+  bool is_free() const { return density.has_value(); }
+};
+
+struct ContactSettings {
+  bool given = false;              ///< whether the scene has the table
+  std::optional<double> distance;  ///< d̂ [m]; default: see build_contact.hpp
+  double friction = 0.3;           ///< Coulomb's μ
+  ContactMode mode = ContactMode::fast;
   Place place;
 };
 
 struct PinSettings {
   std::string name, body;
-  Selection where;
+  Selection where;  ///< of a rigid body nothing: it is held as a whole
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Motion motion;
   std::optional<Vec3> pivot;  ///< of the motion [m]; default: the centre of the held vertices at rest
@@ -105,8 +150,8 @@ struct PinSettings {
 struct ForceSettings {
   enum class Type { gravity, point, wind } type = Type::gravity;
   std::string name;
-  std::string body;  ///< empty: every body
-  Selection where;   ///< point forces
+  std::string body;                ///< empty: every body
+  std::optional<Selection> where;  ///< point forces; none: the centre of mass of a rigid body
   Keyed value;  ///< gravity: acceleration [m/s²]; point: force on each selected vertex [N]; wind: velocity
                 ///< [m/s]
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
@@ -134,6 +179,8 @@ struct Scene {
   TimeSettings time;
   SolverSettings solver;
   std::vector<BodySettings> bodies;
+  std::vector<ColliderSettings> colliders;
+  ContactSettings contact;
   std::vector<PinSettings> pins;
   std::vector<ForceSettings> forces;
   std::vector<ProbeSettings> probes;

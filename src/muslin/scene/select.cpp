@@ -101,14 +101,14 @@ class Selector {
         what_(what),
         shapes_(shapes_of(where, body.spacing())),
         slack_(tolerance * body.spacing()),
-        kept_(static_cast<std::size_t>(body.vertex_count), 1) {}
+        kept_(body.has_lattice() ? body.lattice.vertex_count() : body.mesh.vertex_count(), 1) {}
 
   std::vector<int> select() {
     if (where_.group) keep_group();
     const std::vector<std::uint8_t> of_group = kept_;
     parallel_for(kept_.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        const Vec3 x = body_.rest_position(v);
+        const Vec3 x = position(v);
         for (const Shape& shape : shapes_) kept_[v] &= shape.outside(x) <= slack_;
       }
     });
@@ -122,9 +122,13 @@ class Selector {
   }
 
  private:
+  Vec3 position(std::size_t v) const {
+    return body_.has_lattice() ? body_.lattice.rest_position(v) : body_.mesh.positions[v];
+  }
+
   void keep_group() {
     const MeshGroup& group = find_group(body_, where_, what_);
-    if (body_.is_shell()) {
+    if (!body_.has_lattice()) {
       keep_vertices_of(group);
       return;
     }
@@ -159,7 +163,7 @@ class Selector {
     for (const Vec3& point : where_.nearest) {
       const double least = least_over(kept_, [&](const Vec3& x) { return (x - point).norm(); }).distance;
       for (std::size_t v = 0; v < kept_.size(); ++v) {
-        if (kept_[v] && (body_.rest_position(v) - point).norm() <= least + slack_) near[v] = 1;
+        if (kept_[v] && (position(v) - point).norm() <= least + slack_) near[v] = 1;
       }
     }
     kept_ = std::move(near);
@@ -175,7 +179,7 @@ class Selector {
     return parallel_sum(among.size(), grain, Least{}, [&](std::size_t begin, std::size_t end) {
       Least least;
       for (std::size_t v = begin; v < end; ++v) {
-        if (among[v]) least = least + Least{distance(body_.rest_position(v)), v};
+        if (among[v]) least = least + Least{distance(position(v)), v};
       }
       return least;
     });
@@ -189,7 +193,7 @@ class Selector {
     });
     std::string names;
     for (const Shape& shape : shapes_) names += (names.empty() ? "`" : " and `") + shape.name + "`";
-    const Vec3 x = body_.rest_position(least.vertex);
+    const Vec3 x = position(least.vertex);
     throw Error(ErrorKind::input, where_.place,
                 fmt::format("{}: no vertex of body `{}` lies within {}", what_, body_.name, names),
                 fmt::format("the nearest is [{:.6g}, {:.6g}, {:.6g}], {:.3g} m outside", x.x(), x.y(), x.z(),

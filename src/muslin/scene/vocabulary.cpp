@@ -1,7 +1,6 @@
 #include "muslin/scene/vocabulary.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 
 #include "muslin/material/material_table.hpp"
@@ -10,26 +9,41 @@
 namespace muslin {
 namespace {
 
-constexpr std::array<std::string_view, 4> reserved_keys = {"collider", "contact", "friction", "self_contact"};
-
 std::vector<std::string> joined(std::vector<std::string> keys, const std::vector<std::string>& more) {
   keys.insert(keys.end(), more.begin(), more.end());
   return keys;
+}
+
+std::vector<std::string> collider_keys(const std::vector<std::string>& more) {
+  return joined({"shape", "name", "keyframes", "contact", "colour"}, more);
+}
+
+/// Of those that turn and may have mass: all but the plane.
+std::vector<std::string> moving_keys(const std::vector<std::string>& more) {
+  return joined(collider_keys({"pivot", "density", "velocity", "angular_velocity"}), more);
 }
 
 }  // namespace
 
 const std::vector<VocabularyTable>& scene_vocabulary() {
   static const std::vector<VocabularyTable> tables = {
-      {"", {"title", "time", "solver", "body", "pin", "force", "probe"}},
+      {"", {"title", "time", "solver", "body", "collider", "contact", "pin", "force", "probe"}},
       {"time", {"duration", "frame_rate", "steps_per_frame"}},
       {"solver", {"integrator", "tolerance", "max_iterations", "linear_tolerance"}},
-      {"body",
-       {"name", "mesh", "model", "thickness", "voxel_width", "voxels", "threshold", "bracing", "mass",
-        "boundary_springs", "rest_mesh", "warp", "material", "translate", "rotate", "scale", "velocity",
-        "colour"}},
+      {"body", {"name",      "mesh",      "model",    "thickness",    "voxel_width",
+                "voxels",    "threshold", "bracing",  "mass",         "boundary_springs",
+                "rest_mesh", "warp",      "material", "translate",    "rotate",
+                "scale",     "velocity",  "contact",  "self_contact", "colour"}},
       {"body.material", joined({"base", "youngs_modulus", "shear_modulus"}, material_keys())},
       {"body.material of a shell", joined({"base"}, shell_material_keys())},
+      {"collider.plane", collider_keys({"center", "normal"})},
+      {"collider.sphere", moving_keys({"center", "radius"})},
+      {"collider.capsule", moving_keys({"points", "radius"})},
+      {"collider.box", moving_keys({"center", "size", "rotate"})},
+      {"collider.mesh",
+       moving_keys({"mesh", "translate", "rotate", "scale", "sequence", "frame_rate", "start"})},
+      {"collider.keyframes", {"time", "translate", "rotate"}},
+      {"contact", {"distance", "friction", "mode"}},
       {"where", {"group", "box", "sphere", "plane", "line", "nearest"}},
       {"where.sphere", {"center", "radius"}},
       {"where.plane", {"point", "normal", "distance"}},
@@ -52,14 +66,6 @@ const std::vector<std::string>& known_keys(std::string_view table) {
   const auto at = std::find_if(tables.begin(), tables.end(), [&](const auto& t) { return t.name == table; });
   assert(at != tables.end());
   return at->keys;
-}
-
-void refuse_reserved_keys(const TomlValue& value) {
-  for (std::size_t i = 0; i < value.keys.size(); ++i) {
-    if (std::find(reserved_keys.begin(), reserved_keys.end(), value.keys[i]) == reserved_keys.end()) continue;
-    throw Error(ErrorKind::input, value.items[i].key_place,
-                "`" + value.keys[i] + "` is not available yet in this version", "take it out of the scene");
-  }
 }
 
 }  // namespace muslin

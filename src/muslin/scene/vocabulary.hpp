@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "muslin/core/toml_value.hpp"
-
 namespace muslin {
 
 struct VocabularyTable {
@@ -17,8 +15,5 @@ const std::vector<VocabularyTable>& scene_vocabulary();
 
 /// The keys of one table of scene_vocabulary().
 const std::vector<std::string>& known_keys(std::string_view table);
-
-/// Throws Error(input) at the first key of `value` that is reserved for a later version, such as `collider`.
-void refuse_reserved_keys(const TomlValue& value);
 
 }  // namespace muslin

@@ -102,6 +102,7 @@ struct Simulation::Parts {
   Diagnostics diagnostics;
   std::vector<std::uint8_t> fixed;
   std::vector<Vec3> targets;
+  std::vector<double> masses;  ///< as the solver wants them: none is 0
 
   explicit Parts(std::shared_ptr<const Model> the_model);
   const TimeSettings& time() const { return model->scene.time; }
@@ -135,12 +136,12 @@ int vertex_out_of_range(ConstVectors x) {
 Simulation::Parts::Parts(std::shared_ptr<const Model> the_model) : model(std::move(the_model)) {
   const std::size_t count = model->vertex_count();
   state.positions = model->rest_positions;
-  state.velocities.assign(count, Vec3::Zero());
-  for (std::size_t b = 0; b < model->bodies.size() && b < model->scene.bodies.size(); ++b) {
-    const Body& body = model->bodies[b];
-    std::fill_n(state.velocities.begin() + body.first_vertex, body.vertex_count,
-                model->scene.bodies[b].velocity);
-  }
+  state.velocities = model->velocities;
+  state.velocities.resize(count, Vec3::Zero());
+  // What moves as it is told has no mass, but solvers divide by masses before they leave it out.
+  masses = model->masses;
+  for (const Prescribed& motion : model->prescribed)
+    std::fill_n(masses.begin() + motion.first, motion.start.size(), 1.0);
   fixed.resize(count);
   targets.resize(count);
   if (model->contact) start_contact();
@@ -205,8 +206,9 @@ void Simulation::Parts::advance_by(double length, int halvings) {
   const auto loads = potentials_of_loads(context);
   Holds next = holds;
   next.step(model->pins, context.time_begin, context.time_end, before.positions, fixed, targets);
+  for (const Prescribed& motion : model->prescribed) motion.hold(context.time_end, fixed, targets);
 
-  StepProblem problem{model->masses, {}, fixed, targets, guard.get(), model->rest_positions};
+  StepProblem problem{masses, {}, fixed, targets, guard.get(), model->rest_positions};
   for (const PotentialTerm& term : model->potentials) problem.potentials.push_back(term.potential.get());
   for (const auto& load : loads)
     if (load) problem.potentials.push_back(load.get());

@@ -104,7 +104,7 @@ class Gatherer {
                  {"solid", closed},
                  {"surfaces", Json::object()}};
     add_surface(body, "skin", skin, add_track(PageTrack::Source::skin, b, skin.vertex_count(), nullptr));
-    if (!skins_only_ && !run_.is_shell(b)) {
+    if (!skins_only_ && run_.has_lattice(b)) {
       const Mesh& contour = run_.mesh(b, SurfaceKind::contour);
       if (contour.vertex_count() > 0)
         add_surface(body, "contour", contour,
@@ -122,10 +122,10 @@ class Gatherer {
     std::vector<int> vertices;
     const std::size_t stride = (chosen.vertices.size() + most_pinned_points - 1) / most_pinned_points;
     for (std::size_t i = 0; i < chosen.vertices.size(); i += stride) vertices.push_back(chosen.vertices[i]);
-    const bool shell = run_.is_shell(chosen.body);
-    const std::size_t cached = shell ? run_.mesh(chosen.body, SurfaceKind::skin).vertex_count()
-                                     : run_.lattice(chosen.body).rest_positions.size();
-    return add_track(shell ? PageTrack::Source::skin : PageTrack::Source::lattice, chosen.body, cached,
+    const bool lattice = run_.has_lattice(chosen.body);
+    const std::size_t cached = lattice ? run_.lattice(chosen.body).rest_positions.size()
+                                       : run_.mesh(chosen.body, SurfaceKind::skin).vertex_count();
+    return add_track(lattice ? PageTrack::Source::lattice : PageTrack::Source::skin, chosen.body, cached,
                      &vertices);
   }
 

@@ -1,0 +1,38 @@
+// Four points that move a rigid body: every point of it is a fixed affine combination of them.
+//
+// They are the corners of the equimomental tetrahedron: four equal masses m/4 at
+//
+//   centre + axes · (±a, ±b, ±c),   even number of minus signs,   a² = S_xx / m, …
+//
+// in the principal axes of the second moment S have the body's mass, centre and second moment, hence its
+// inertia tensor (Routh, Dynamics of a System of Rigid Bodies, art. 36). So with x = Σ wᵢ qᵢ the mass matrix
+// of q is exactly m/4 · 1: no lumping.
+#pragma once
+
+#include <array>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/geometry/mass_properties.hpp"
+
+namespace muslin {
+
+struct AffineFrame {
+  Vec3 centre = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();  ///< columns; a rotation
+  Vec3 radii = Vec3::Ones();     ///< a, b, c > 0 [m]
+
+  std::array<Vec3, 4> corners() const;
+  /// wᵢ, which sum to 1, of a point of the body where the corners are at rest.
+  std::array<double, 4> weights(const Vec3& point) const;
+};
+
+/// Of a body of these mass properties (volume > 0). A radius less than a thousandth of the largest is made
+/// as large as that: a needle's or a foil's spin about its axis or along itself is slower than the real one,
+/// which no picture shows, and the equations stay well conditioned.
+AffineFrame equimomental_frame(const MassProperties& body);
+
+/// Signs of the corners, one row per corner.
+inline constexpr std::array<std::array<int, 3>, 4> corner_signs = {
+    {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
+
+}  // namespace muslin

@@ -1,0 +1,242 @@
+#include "muslin/scene/build_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/geometry/edge_length.hpp"
+#include "muslin/material/lattice_moduli.hpp"
+
+namespace muslin {
+namespace {
+
+using Shape = ColliderSettings::Shape;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double size_share = 1.0 / 500, edge_share = 0.2;  // of d̂
+constexpr double thin = 5e-4, thin_share = 0.1;             // thickness of shells: [m], of the mean edge
+constexpr double stiffness_share = 0.15;
+constexpr double floor_share = 0.005;       // of the gap floor, in d̂
+constexpr double longest_step = 1.0 / 150;  // beyond this the fast mode is not what it could be [s]
+
+double lattice_stiffness(const Body& body, const BodySettings& settings) {
+  const Material& m = settings.material;
+  const ElasticModuli moduli = elastic_moduli(
+      {m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus}, settings.bracing, m.volume_modulus);
+  const double width = body.lattice.width;
+  return stiffness_share * moduli.youngs * (body.sheet ? std::min(width, body.thickness) : width);
+}
+
+class ContactBuilder {
+ public:
+  explicit ContactBuilder(Model& model) : model_(model), scene_(model.scene) {}
+
+  void build() {
+    if (!wanted()) return;
+    if (scene_.solver.integrator == Integrator::symplectic_euler) {
+      throw Error(ErrorKind::input, scene_.contact.given ? scene_.contact.place : Place{scene_.file.string()},
+                  "symplectic_euler knows no contact", "choose an implicit integrator");
+    }
+    prescribed_.assign(model_.vertex_count(), 0);
+    groups_.assign(model_.vertex_count(), -1);
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
+      if (scene_.bodies[b].contact) add_body(model_.bodies[b], scene_.bodies[b]);
+    for (std::size_t c = 0; c < scene_.colliders.size(); ++c)
+      if (scene_.colliders[c].contact) add_collider(model_.collider(c), scene_.colliders[c]);
+    if (!can_touch()) return;
+    finish();
+    warn();
+  }
+
+ private:
+  bool wanted() const {
+    return !scene_.colliders.empty() || scene_.contact.given || scene_.bodies.size() > 1;
+  }
+
+  bool can_touch() const {
+    for (std::size_t a = 0; a < bodies_.size(); ++a) {
+      if (!bodies_[a].fixed && bodies_[a].self_contact) return true;
+      for (std::size_t b = 0; b < a; ++b)
+        if (!(bodies_[a].fixed && bodies_[b].fixed)) return true;
+    }
+    return false;
+  }
+
+  void add_body(const Body& body, const BodySettings& settings) {
+    const Triangulation cut = triangulate(body.mesh);
+    const double edge = mean_edge(body.mesh.positions, cut.triangles);
+    ContactBody contact;
+    contact.self_contact = settings.self_contact;
+    if (body.is_shell()) {
+      const ShellMaterial& m = *settings.material.shell;
+      contact.radius = settings.shell_thickness.value_or(std::min(thin, thin_share * edge)) / 2;
+      contact.stiffness = stiffness_share * std::sqrt(m.membrane_warp * m.membrane_weft);
+    } else {
+      contact.radius = body.sheet ? body.thickness / 2 : 0;
+      contact.stiffness = lattice_stiffness(body, settings);
+    }
+    note_size(body, edge);
+    add_mesh(body, cut, contact);
+    if (body.has_lattice() && edge > 2 * body.lattice.width) {
+      model_.warnings.push_back(
+          fmt::format("body {}: contact sees its mesh, whose edges of {:.3g} m do not bend as its voxels do; "
+                      "subdivide the mesh",
+                      body.name, edge));
+    }
+  }
+
+  void add_collider(const Body& body, const ColliderSettings& settings) {
+    ContactBody contact;
+    contact.fixed = body.prescribed;
+    contact.self_contact = false;
+    contact.stiffness = infinite;
+    const auto first = static_cast<std::size_t>(body.first_vertex);
+    if (body.prescribed) std::fill_n(prescribed_.begin() + body.first_vertex, body.vertex_count, 1);
+    if (body.is_rigid()) std::fill_n(groups_.begin() + body.first_vertex, body.vertex_count, group_count_++);
+    if (!body.prescribed) {
+      const double step = scene_.time.step();
+      contact.stiffness = 4 * model_.masses[first] / (step * step);
+      note_size(body, body.mean_edge);
+    }
+    switch (settings.shape) {
+      case Shape::plane: {
+        const int point = add_point(body, body.frame.centre);
+        planes_.push_back({point, settings.normal});
+        break;
+      }
+      case Shape::sphere: {
+        const int point = add_point(body, body.frame.centre);
+        add_triangle(Vec3i::Constant(point), 0);
+        contact.radius = settings.radius;
+        break;
+      }
+      case Shape::capsule: {
+        const Eigen::Isometry3d start = start_of(body);
+        const int a = add_point(body, start * settings.points[0]),
+                  b = add_point(body, start * settings.points[1]);
+        add_triangle({a, b, b}, 0);
+        contact.radius = settings.radius;
+        break;
+      }
+      case Shape::box:
+      case Shape::mesh:
+        add_mesh(body, triangulate(body.mesh), contact);
+        return;
+    }
+    finish_body(body, contact);
+  }
+
+  /// How far a collider has moved from where its shape is given, at time 0.
+  Eigen::Isometry3d start_of(const Body& body) const {
+    for (const Prescribed& p : model_.prescribed)
+      if (p.first == body.first_vertex) return p.motion.at(0);
+    return Eigen::Isometry3d::Identity();
+  }
+
+  void note_size(const Body& body, double edge) {
+    largest_ = std::max(largest_, body.mesh.bounds().sizes().maxCoeff());
+    shortest_edge_ = std::min(shortest_edge_, edge);
+  }
+
+  /// Of the body that is in work.
+  int add_point(const Body& body, const Vec3& at) {
+    const auto weights = body.frame.weights(at);
+    for (int i = 0; i < 4; ++i)
+      entries_.push_back({body.first_vertex + i, weights[static_cast<std::size_t>(i)]});
+    return close_point(at);
+  }
+
+  int close_point(const Vec3& at) {
+    offsets_.push_back(static_cast<int>(entries_.size()));
+    body_of_point_.push_back(static_cast<int>(bodies_.size()));
+    rest_.push_back(at);
+    return static_cast<int>(rest_.size()) - 1;
+  }
+
+  void add_triangle(const Vec3i& points, int face) {
+    triangles_.push_back(points);
+    faces_.push_back(face);
+  }
+
+  void finish_body(const Body& body, const ContactBody& contact) {
+    bodies_.push_back(contact);
+    names_.push_back(body.name);
+  }
+
+  void add_mesh(const Body& body, const Triangulation& cut, const ContactBody& contact) {
+    const int first = static_cast<int>(rest_.size());
+    for (std::size_t p = 0; p < body.skin.size(); ++p) {
+      // The same vertex may be named twice, with weight 0.
+      for (std::size_t s = 0; s < 8; ++s) {
+        if (body.skin.weights[p][s] == 0) continue;
+        entries_.push_back({body.first_vertex + body.skin.vertices[p][s], body.skin.weights[p][s]});
+      }
+      close_point(body.mesh.positions[p]);
+    }
+    for (std::size_t t = 0; t < cut.triangles.size(); ++t)
+      add_triangle(cut.triangles[t] + Vec3i::Constant(first), cut.faces[t]);
+    finish_body(body, contact);
+  }
+
+  void finish() {
+    const auto model = std::make_shared<ContactModel>();
+    model->distance =
+        scene_.contact.distance.value_or(std::min(size_share * largest_, edge_share * shortest_edge_));
+    model->friction = scene_.contact.friction;
+    model->mode = scene_.contact.mode;
+    model->limits.gap_floor = floor_share * model->distance;
+    model->limits.prescribed = std::move(prescribed_);
+    model->limits.groups = std::move(groups_);
+    model->rest = std::move(rest_);
+    model->names = std::move(names_);
+    model->faces = std::move(faces_);
+    model->surface = std::make_shared<ContactSurface>(std::move(triangles_), std::move(body_of_point_),
+                                                      std::move(bodies_), std::move(planes_));
+    model->map =
+        std::make_shared<SurfaceMap>(is_identity() ? SurfaceMap::identity(model_.vertex_count())
+                                                   : SurfaceMap(model_.vertex_count(), offsets_, entries_));
+    model_.contact = model;
+  }
+
+  /// Whether points are the vertices, one by one: nothing but shells.
+  bool is_identity() const {
+    if (entries_.size() != model_.vertex_count() || offsets_.size() != entries_.size() + 1) return false;
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+      if (entries_[i].vertex != static_cast<int>(i) || entries_[i].weight != 1) return false;
+    return true;
+  }
+
+  void warn() const {
+    if (scene_.contact.mode == ContactMode::fast && scene_.time.step() > longest_step) {
+      model_.warnings.push_back(
+          fmt::format("contact: steps of {:.3g} s are long for `mode = \"fast\"`; set `steps_per_frame` to "
+                      "at least {:.0f}, "
+                      "or take `mode = \"converged\"`",
+                      scene_.time.step(), std::ceil(1 / (scene_.time.frame_rate * longest_step))));
+    }
+  }
+
+  Model& model_;
+  const Scene& scene_;
+  std::vector<Vec3i> triangles_;
+  std::vector<int> faces_;
+  std::vector<std::string> names_;
+  std::vector<int> body_of_point_, offsets_ = {0};
+  std::vector<SurfaceMap::Entry> entries_;
+  std::vector<Vec3> rest_;
+  std::vector<ContactBody> bodies_;
+  std::vector<ContactPlane> planes_;
+  std::vector<std::uint8_t> prescribed_;
+  std::vector<int> groups_;
+  int group_count_ = 0;
+  double largest_ = 0, shortest_edge_ = infinite;
+};
+
+}  // namespace
+
+void build_contact(Model& model) { ContactBuilder(model).build(); }
+
+}  // namespace muslin

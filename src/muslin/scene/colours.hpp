@@ -1,0 +1,29 @@
+// How pictures tell bodies apart where the scene does not say.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "muslin/scene/scene.hpp"
+
+namespace muslin {
+
+/// Of the body with this number, sRGB 0…1.
+inline Vec3 palette_colour(std::size_t index) {
+  static const std::array<Vec3, 5> palette = {Vec3(0.72, 0.20, 0.17), Vec3(0.16, 0.42, 0.62),
+                                              Vec3(0.82, 0.60, 0.20), Vec3(0.30, 0.52, 0.32),
+                                              Vec3(0.50, 0.34, 0.58)};
+  return palette[index % palette.size()];
+}
+
+/// Of colliders: muted, so that bodies stand out.
+inline Vec3 collider_colour() { return {0.52, 0.54, 0.57}; }
+
+/// Of a body of the model, counted with the colliders after the bodies of the scene.
+inline Vec3 colour_of(const Scene& scene, std::size_t index) {
+  const std::size_t bodies = scene.bodies.size();
+  return index < bodies ? scene.bodies[index].colour.value_or(palette_colour(index))
+                        : scene.colliders[index - bodies].colour.value_or(collider_colour());
+}
+
+}  // namespace muslin

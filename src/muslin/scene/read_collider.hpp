@@ -1,0 +1,17 @@
+// Reading a [[collider]], and [contact].
+#pragma once
+
+#include <cstddef>
+
+#include "muslin/core/toml_table.hpp"
+#include "muslin/scene/scene.hpp"
+
+namespace muslin {
+
+/// `index` counts the colliders from 0. Errors: input.
+ColliderSettings read_collider(const TomlValue& value, std::size_t index);
+
+/// [contact] of the scene, defaults if there is none. Errors: input.
+ContactSettings read_contact(const TomlTable& top);
+
+}  // namespace muslin

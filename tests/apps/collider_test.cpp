@@ -1,0 +1,134 @@
+// Colliders and rigid bodies through the program: runs, resumes, thread counts, exports, pictures, and what
+// `check` says of a tangled start.
+#include "apps/program.hpp"
+#include "support/sheet.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "muslin/cache/run_reader.hpp"
+#include "muslin/io/mesh_file.hpp"
+
+namespace muslin {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::run;
+using test::Scratch;
+using testing::HasSubstr;
+
+/// A cloth of 0.4 m falls on a ball and a box that moves, a heavy ball falls on it, all above a floor.
+void write_scene(const Scratch& scratch, const std::string& more = "") {
+  write_mesh(scratch / "sheet.obj", test::flat_sheet(12, 12, 0.4, 0.4));
+  test::write_bytes(
+      scratch / "scene.toml",
+      "[[body]]\nname = \"cloth\"\nmesh = \"sheet.obj\"\nmodel = \"shell\"\n"
+      "material = { areal_density = 0.2, membrane_warp = 500, bending_warp = 1e-4 }\n"
+      "translate = [-0.2, 0, -0.2]\n" +
+          more +
+          "[[collider]]\nname = \"floor\"\nshape = \"plane\"\ncenter = [0, -0.3, 0]\n"
+          "[[collider]]\nname = \"post\"\nshape = \"sphere\"\ncenter = [0, -0.11, 0]\nradius = 0.1\n"
+          "[[collider]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.05, 0.06, 0]\n"
+          "radius = 0.03\ndensity = 700\ncolour = [0.9, 0.8, 0.1]\n"
+          "[[collider]]\nname = \"lift\"\nshape = \"box\"\ncenter = [0.15, -0.2, 0]\n"
+          "size = [0.05, 0.05, 0.05]\nkeyframes = [{ time = 0 }, { time = 0.5, translate = [0, 0.1, 0] }]\n"
+          "[[force]]\ntype = \"gravity\"\n"
+          "[[probe]]\nname = \"middle of the ball\"\nbody = \"ball\"\nat = [0.05, 0.06, 0]\n");
+}
+
+std::vector<std::string> words(const Scratch& scratch, const std::string& directory, int frames) {
+  return {"run",      (scratch / "scene.toml").string(),
+          "-o",       (scratch / directory).string(),
+          "--frames", std::to_string(frames),
+          "--quiet"};
+}
+
+TEST(ColliderRun, ShowsCollidersAndResumesBitForBit) {
+  const Scratch scratch;
+  write_scene(scratch);
+  const auto straight = run(scratch, words(scratch, "straight", 6));
+  ASSERT_EQ(straight.code, 0) << straight.err;
+  ASSERT_EQ(run(scratch, words(scratch, "stopped", 3)).code, 0);
+  std::vector<std::string> resume = words(scratch, "stopped", 6);
+  resume.emplace_back("--resume");
+  ASSERT_EQ(run(scratch, resume).code, 0);
+  std::vector<std::string> threads = words(scratch, "threads", 6);
+  threads.insert(threads.end(), {"--threads", "2"});
+  ASSERT_EQ(run(scratch, threads).code, 0);
+  for (const char* file : {"cloth.skin.pc2", "ball.skin.pc2", "lift.skin.pc2", "probes.csv", "stats.json"}) {
+    EXPECT_TRUE(bytes_of(scratch / "straight" / file) == bytes_of(scratch / "stopped" / file)) << file;
+    EXPECT_TRUE(bytes_of(scratch / "straight" / file) == bytes_of(scratch / "threads" / file)) << file;
+  }
+  const auto stats = nlohmann::json::parse(bytes_of(scratch / "straight" / "stats.json"));
+  EXPECT_EQ(stats["bodies"].size(), 1u);
+  EXPECT_EQ(stats["colliders"].size(), 4u);
+
+  const RunReader reader(scratch / "straight");
+  ASSERT_EQ(reader.bodies().size(), 5u);
+  const int floor = reader.find_body("floor"), ball = reader.find_body("ball"),
+            lift = reader.find_body("lift");
+  EXPECT_TRUE(reader.is_plane(floor) && reader.is_collider(ball) && !reader.is_collider(0));
+  EXPECT_EQ(reader.colour(ball), Vec3(0.9, 0.8, 0.1));
+  EXPECT_EQ(reader.colour(lift), Vec3(0.52, 0.54, 0.57));
+  EXPECT_EQ(reader.points(floor, SurfaceKind::skin, 6), reader.points(floor, SurfaceKind::skin, 0));
+  const float up =
+      reader.points(lift, SurfaceKind::skin, 6)[0].y() - reader.points(lift, SurfaceKind::skin, 0)[0].y();
+  EXPECT_NEAR(up, 0.05, 1e-6);
+  EXPECT_LT(reader.points(ball, SurfaceKind::skin, 6)[0].y(),
+            reader.points(ball, SurfaceKind::skin, 0)[0].y() - 0.01);
+  for (const Diagnostics& row : reader.diagnostics()) EXPECT_GT(row.min_distance, 0) << row.frame;
+
+  ASSERT_EQ(run(scratch, {"render", (scratch / "straight").string(), "-o", (scratch / "a.png").string(),
+                          "--size", "160x90", "--samples", "1", "--quiet"})
+                .code,
+            0);
+  for (const char* file : {"a.obj", "a.usda", "a.glb", "a.vtu"}) {
+    const auto outcome = run(
+        scratch, {"export", (scratch / "straight").string(), (scratch / file).string(), "--body", "ball"});
+    EXPECT_EQ(outcome.code, 0) << file << ": " << outcome.err;
+  }
+  ASSERT_EQ(
+      run(scratch, {"build", (scratch / "scene.toml").string(), "-o", (scratch / "stages").string()}).code,
+      0);
+  EXPECT_TRUE(fs::exists(scratch / "stages" / "post.skin.obj"));
+}
+
+TEST(ColliderRun, RefusesToResumeWithAnotherCollider) {
+  const Scratch scratch;
+  write_scene(scratch);
+  ASSERT_EQ(run(scratch, words(scratch, "run", 1)).code, 0);
+  std::vector<std::string> resume = words(scratch, "run", 2);
+  resume.insert(resume.end(), {"--resume", "--set", "collider.post.radius=0.09"});
+  const auto outcome = run(scratch, resume);
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("collider.1.radius"));
+}
+
+TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
+  const Scratch scratch;
+  write_scene(scratch);
+  const std::string scene = (scratch / "scene.toml").string();
+  EXPECT_EQ(run(scratch, {"check", scene}).code, 0);
+
+  const std::string high = "collider.post.center=[0, -0.05, 0]";
+  const std::string picture = (scratch / "start.png").string();
+  const auto text = run(scratch, {"check", scene, "--set", high, "--picture", picture});
+  EXPECT_EQ(text.code, 3);
+  EXPECT_THAT(text.err, HasSubstr("surfaces cross at the start"));
+  EXPECT_THAT(text.out, testing::AllOf(HasSubstr("where surfaces cross"), HasSubstr("\"cloth\""),
+                                       HasSubstr("\"post\"")));
+  EXPECT_EQ(bytes_of(picture).substr(1, 3), "PNG");
+  const auto json = run(scratch, {"check", scene, "--json", "--set", high});
+  EXPECT_EQ(json.code, 3);
+  const auto crossings = nlohmann::json::parse(json.out)["crossings"];
+  ASSERT_GT(crossings.size(), 0u);
+  EXPECT_EQ(crossings[0]["bodies"], (nlohmann::json{"cloth", "post"}));
+  EXPECT_LT(std::abs(crossings[0]["at"][1].get<double>()), 0.06);
+  std::vector<std::string> start = words(scratch, "run", 1);
+  start.insert(start.end(), {"--set", high});
+  EXPECT_EQ(run(scratch, start).code, 3);
+}
+
+}  // namespace
+}  // namespace muslin
