@@ -27,7 +27,7 @@ Model with_force() {
   force.type = ForceSettings::Type::point;
   force.name = "tug";
   force.body = "flag";
-  force.where.nearest = {Vec3(3, 0, 0)};
+  force.where.emplace().nearest = {Vec3(3, 0, 0)};
   model.scene.forces = {ForceSettings{}, force};
   return model;
 }

@@ -226,7 +226,7 @@ TEST_F(ColliderModel, SequencesAreMeshesWhoseVerticesMove) {
   EXPECT_THAT(describe_text(model), HasSubstr("collider walker: box.obj, sequence, 12 triangles"));
   write_mesh(frames / "walk.3.obj", test::flat_sheet(1, 1, 1, 1));
   EXPECT_THAT(message(cloth + walker + "sequence = 'frames/walk.#.obj'\n"),
-              testing::AllOf(HasSubstr("scene.toml:14:12: "), HasSubstr("it has 4 vertices, the first")));
+              testing::AllOf(HasSubstr("scene.toml:12:12: "), HasSubstr("it has 4 vertices, the first")));
   for (const int frame : {0, 1, 2})
     std::filesystem::remove(frames / ("walk." + std::to_string(frame) + ".obj"));
   EXPECT_THAT(message(cloth + walker + "sequence = 'frames/walk.#.obj'\n"),
