@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -63,11 +64,12 @@ class ContactScene {
                   body.shell, MembraneModuli{m.membrane, m.membrane, shear, m.poisson}, pattern));
     add(body,
         std::make_shared<HingeBending>(body.shell, BendingModuli{m.bending, m.bending, m.bending}, pattern));
+    const auto first_point = static_cast<int>(bodies_of_points_.size());
     for (std::size_t v = 0; v < grid.positions.size(); ++v) {
       add_vertex(grid.positions[v], m.areal_density * body.shell.vertex_areas[v]);
-      points_.push_back(static_cast<int>(bodies.size()));
+      add_point({{body.first_vertex + static_cast<int>(v), 1}});
     }
-    for (const Vec3i& t : grid.triangles) triangles_.push_back(t.array() + body.first_vertex);
+    for (const Vec3i& t : grid.triangles) triangles_.push_back(t.array() + first_point);
     distance = std::min(distance, 0.2 * spacing);
     bodies.push_back(contact);
     model.scene.bodies.emplace_back().name = body.name;
@@ -78,15 +80,36 @@ class ContactScene {
   /// A ball that does not turn, held or moved by a pin of its own; returns its vertex.
   int add_ball(const Vec3& centre, double radius, Motion motion = {}) {
     const int v = add_held_vertex(centre, std::move(motion));
-    triangles_.emplace_back(v, v, v);
+    triangles_.push_back(Vec3i::Constant(add_point({{v, 1}})));
     bodies.push_back({radius, false, true, INFINITY});
     return v;
+  }
+
+  /// A ball carried by four vertices, its equimomental tetrahedron if it has a mass; with none it is held, or
+  /// moved by a pin of its own. Returns the first vertex.
+  int add_turning_ball(const Vec3& centre, double radius, double mass, Motion motion = {}) {
+    const int first = static_cast<int>(model.vertex_count());
+    std::vector<SurfaceMap::Entry> entries;
+    std::vector<int> all;
+    for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)}) {
+      entries.push_back({first + static_cast<int>(entries.size()), 0.25});
+      all.push_back(entries.back().vertex);
+      // Points of a quarter of the mass at √(3/5) of the radius have the moments of a solid ball.
+      add_vertex(centre + radius * std::sqrt(0.6 / 3) * corner, mass > 0 ? mass / 4 : 1);
+      prescribed_.back() = mass > 0 ? 0 : 1;
+    }
+    triangles_.push_back(Vec3i::Constant(add_point(std::move(entries))));
+    ContactBody body = {radius, false, mass <= 0, mass > 0 ? 1e5 : INFINITY};
+    for (std::size_t k = 0; k < 4; ++k) body.frame[k] = all[k];
+    bodies.push_back(body);
+    if (mass <= 0) hold(all, std::move(motion));
+    return first;
   }
 
   /// A half-space; returns its vertex.
   int add_plane(const Vec3& point, const Vec3& normal, Motion motion = {}) {
     const int v = add_held_vertex(point, std::move(motion));
-    planes.push_back({v, normal.normalized()});
+    planes.push_back({add_point({{v, 1}}), normal.normalized()});
     bodies.push_back({0, false, true, INFINITY});
     return v;
   }
@@ -103,9 +126,20 @@ class ContactScene {
     auto weights = std::make_shared<UniformGravity>(model.masses, gravity);
     model.potentials.push_back({"gravity", EnergyRole::potential, weights});
     auto contact = std::make_shared<ContactModel>();
-    contact->surface = std::make_shared<ContactSurface>(triangles_, points_, bodies, planes);
-    contact->map = std::make_shared<SurfaceMap>(SurfaceMap::identity(model.vertex_count()));
-    contact->rest = model.rest_positions;
+    contact->surface = std::make_shared<ContactSurface>(triangles_, bodies_of_points_, bodies, planes);
+    std::vector<int> offsets = {0};
+    std::vector<SurfaceMap::Entry> entries;
+    bool identity = rows_.size() == model.vertex_count();
+    for (const auto& row : rows_) {
+      identity = identity && row.size() == 1 && row[0].vertex == static_cast<int>(entries.size());
+      entries.insert(entries.end(), row.begin(), row.end());
+      offsets.push_back(static_cast<int>(entries.size()));
+    }
+    contact->map = std::make_shared<SurfaceMap>(
+        identity ? SurfaceMap::identity(model.vertex_count())
+                 : SurfaceMap(model.vertex_count(), std::move(offsets), std::move(entries)));
+    contact->rest.resize(rows_.size());
+    contact->map->apply(model.rest_positions, contact->rest);
     contact->distance = distance;
     contact->friction = friction;
     contact->mode = mode;
@@ -128,17 +162,23 @@ class ContactScene {
     model.masses.push_back(mass);
     prescribed_.push_back(0);
   }
+  /// Of the body that is added next.
+  int add_point(std::vector<SurfaceMap::Entry> row) {
+    bodies_of_points_.push_back(static_cast<int>(bodies.size()));
+    rows_.push_back(std::move(row));
+    return static_cast<int>(rows_.size()) - 1;
+  }
   int add_held_vertex(const Vec3& x, Motion motion) {
     const int v = static_cast<int>(model.vertex_count());
     add_vertex(x, 1);
     prescribed_.back() = 1;
-    points_.push_back(static_cast<int>(bodies.size()));
     hold({v}, std::move(motion));
     return v;
   }
 
   std::vector<Vec3i> triangles_;
-  std::vector<int> points_;
+  std::vector<int> bodies_of_points_;
+  std::vector<std::vector<SurfaceMap::Entry>> rows_;
   std::vector<std::uint8_t> prescribed_;
 };
 

@@ -66,15 +66,13 @@ ContactCandidates::ContactCandidates(std::shared_ptr<const ContactSurface> surfa
     if (sizes[body] > 3 && b.self_contact && !b.fixed) thickest = std::max(thickest, 2 * b.radius);
   }
   search_.find(rest, rest, std::max(thickest, contact_distance / rest_range), found_);
-  std::vector<ContactPair> pair;
   const auto note = [&](PairKind kind, int first, int second) {
     const std::array<int, 4> points = points_of(*surface_, kind, first, second);
     if (surface_->body_of(points[0]) != surface_->body_of(points[3])) return;
-    pair.clear();
-    add(kind, first, second, rest, pair);
-    const double distance = pair_geometry(*surface_, pair.front(), rest).distance;
-    if (rest_thickness * distance < pair.front().thickness || rest_range * distance < pair.front().range)
-      rest_distances_.push_back({pair.front().key(), distance});
+    const ContactPair pair = make_pair(kind, first, second);
+    const double distance = pair_geometry(*surface_, pair, rest).distance;
+    if (rest_thickness * distance < pair.thickness || rest_range * distance < pair.range)
+      rest_distances_.push_back({pair.key(), distance});
   };
   for (const VertexTriangle& p : found_.vertex_triangle) note(PairKind::vertex_triangle, p.point, p.triangle);
   for (const EdgeEdge& p : found_.edge_edge) note(PairKind::edge_edge, p.first, p.second);
@@ -92,38 +90,55 @@ void ContactCandidates::limit_by_rest(ContactPair& pair) const {
   pair.range = std::min(pair.range, rest_range * found->distance);
 }
 
-/// Adds the pair unless the plane across its closest points at `begin` keeps it out of range as long as all
-/// points stay in their boxes.
-void ContactCandidates::add(PairKind kind, int first, int second, ConstVectors begin,
-                            std::vector<ContactPair>& out) const {
+void ContactCandidates::leave_free(std::span<const std::array<int, 2>> triangles) {
+  free_.clear();
+  for (const auto& [first, second] : triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+      free_.push_back(ContactPair::key_of(PairKind::vertex_triangle, surface_->triangles()[a][i], second));
+      free_.push_back(ContactPair::key_of(PairKind::vertex_triangle, surface_->triangles()[b][i], first));
+      for (int j = 0; j < 3; ++j) {
+        const int e = surface_->triangle_edges()[a][i], f = surface_->triangle_edges()[b][j];
+        if (e < 0 || f < 0) continue;
+        free_.push_back(ContactPair::key_of(PairKind::edge_edge, std::min(e, f), std::max(e, f)));
+      }
+    }
+  }
+  std::sort(free_.begin(), free_.end());
+}
+
+bool ContactCandidates::is_free(PairKind kind, int first, int second) const {
+  return !free_.empty() &&
+         std::binary_search(free_.begin(), free_.end(), ContactPair::key_of(kind, first, second));
+}
+
+ContactPair ContactCandidates::make_pair(PairKind kind, int first, int second) const {
   ContactPair pair;
   pair.kind = kind;
   pair.first = first;
   pair.second = second;
   pair.points = points_of(*surface_, kind, first, second);
-  const int count = pair.point_count();
   pair.thickness = surface_->radius_of(pair.points[0]) +
-                   surface_->radius_of(pair.points[static_cast<std::size_t>(count - 1)]);
+                   surface_->radius_of(pair.points[static_cast<std::size_t>(pair.point_count() - 1)]);
   pair.range = contact_distance_;
   limit_by_rest(pair);
-  if (!lower_.empty()) {
-    const PairGeometry at = pair_geometry(*surface_, pair, begin);
-    const int size_a = first_feature_size(kind);
-    double a = std::numeric_limits<double>::infinity(), b = -a;
-    const Vec3 extent = at.normal.cwiseAbs();
-    for (int i = 0; i < count; ++i) {
-      const auto p = static_cast<std::size_t>(pair.points[static_cast<std::size_t>(i)]);
-      const double middle = at.normal.dot(lower_[p] + upper_[p]) / 2;
-      const double half = extent.dot(upper_[p] - lower_[p]) / 2;
-      if (i < size_a) {
-        a = std::min(a, middle - half);
-      } else {
-        b = std::max(b, middle + half);
-      }
-    }
-    if (a - b > pair.thickness + pair.range) return;
+  return pair;
+}
+
+template <class Pair>
+void ContactCandidates::add_near(PairKind kind, std::span<const Pair> found,
+                                 std::vector<ContactPair>& out) const {
+  std::vector<std::array<int, 4>> points(found.size());
+  std::vector<std::uint8_t> near(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto [first, second] = found[i];
+    points[i] = points_of(*surface_, kind, first, second);
   }
-  out.push_back(pair);
+  culling_.mark_near(kind, points, contact_distance_, near.data());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto [first, second] = found[i];
+    if (near[i] != 0 && !is_free(kind, first, second)) out.push_back(make_pair(kind, first, second));
+  }
 }
 
 void ContactCandidates::update(ConstVectors begin, ConstVectors end, double margin) {
@@ -137,30 +152,41 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
     upper_[p] = begin[p].cwiseMax(end[p]).array() + margin;
   }
   search_.find(lower_, upper_, contact_distance_, found_);
-  const std::size_t vertex_triangle = found_.vertex_triangle.size(), edge_edge = found_.edge_edge.size();
-  const std::size_t plane_pairs = surface_->planes().size() * points;
-  const std::size_t total = vertex_triangle + edge_edge + plane_pairs;
-  std::vector<std::vector<ContactPair>> parts((total + grain - 1) / grain);
-  parallel_for(total, grain, [&](std::size_t from, std::size_t to) {
-    std::vector<ContactPair>& out = parts[from / grain];
+  culling_.set_points(*surface_, begin, lower_, upper_);
+  const auto blocks = [](std::size_t count) { return (count + grain - 1) / grain; };
+  const std::size_t vertex_triangle = blocks(found_.vertex_triangle.size());
+  std::vector<std::vector<ContactPair>> parts(vertex_triangle + blocks(found_.edge_edge.size()));
+  parallel_for(parts.size(), 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
+      const auto block = [](const auto& all, std::size_t k) {
+        return std::span(all).subspan(k * grain, std::min(grain, all.size() - k * grain));
+      };
       if (i < vertex_triangle) {
-        const VertexTriangle& p = found_.vertex_triangle[i];
-        add(PairKind::vertex_triangle, p.point, p.triangle, begin, out);
-      } else if (i < vertex_triangle + edge_edge) {
-        const EdgeEdge& p = found_.edge_edge[i - vertex_triangle];
-        add(PairKind::edge_edge, p.first, p.second, begin, out);
+        add_near(PairKind::vertex_triangle, block(found_.vertex_triangle, i), parts[i]);
       } else {
-        const std::size_t k = i - vertex_triangle - edge_edge;
-        const int plane = static_cast<int>(k / points), point = static_cast<int>(k % points);
-        const int carrier = surface_->planes()[static_cast<std::size_t>(plane)].point;
-        if (point != carrier && surface_->may_touch(surface_->body_of(point), surface_->body_of(carrier)))
-          add(PairKind::point_plane, point, plane, begin, out);
+        add_near(PairKind::edge_edge, block(found_.edge_edge, i - vertex_triangle), parts[i]);
       }
     }
   });
   pairs_.clear();
   for (const std::vector<ContactPair>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
+  for (std::size_t k = 0; k < surface_->planes().size(); ++k) add_near_plane(static_cast<int>(k));
+}
+
+void ContactCandidates::add_near_plane(int plane) {
+  const ContactPlane& half_space = surface_->planes()[static_cast<std::size_t>(plane)];
+  const auto carrier = static_cast<std::size_t>(half_space.point);
+  const Vec3 &n = half_space.normal, extent = n.cwiseAbs();
+  const double top =
+      n.dot(lower_[carrier] + upper_[carrier]) / 2 + extent.dot(upper_[carrier] - lower_[carrier]) / 2;
+  const double radius = surface_->radius_of(half_space.point) + contact_distance_;
+  for (std::size_t p = 0; p < lower_.size(); ++p) {
+    const int point = static_cast<int>(p);
+    const double bottom = n.dot(lower_[p] + upper_[p]) / 2 - extent.dot(upper_[p] - lower_[p]) / 2;
+    if (bottom - top > radius + surface_->radius_of(point) || p == carrier) continue;
+    if (surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point)))
+      pairs_.push_back(make_pair(PairKind::point_plane, point, plane));
+  }
 }
 
 double ContactCandidates::smallest_gap(ConstVectors x) const {

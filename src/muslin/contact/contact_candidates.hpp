@@ -11,6 +11,7 @@
 
 #include "muslin/contact/contact_surface.hpp"
 #include "muslin/contact/distance.hpp"
+#include "muslin/contact/pair_culling.hpp"
 #include "muslin/contact/pair_search.hpp"
 #include "muslin/core/vectors.hpp"
 
@@ -24,7 +25,8 @@ struct ContactPair {
   double range = 0;      ///< the contact distance d̂ of this pair [m]: contact energy acts below this gap
 
   /// Says which features, for any order of the pairs.
-  std::uint64_t key() const {
+  std::uint64_t key() const { return key_of(kind, first, second); }
+  static std::uint64_t key_of(PairKind kind, int first, int second) {
     return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(first) << 31 |
            static_cast<std::uint64_t>(second);
   }
@@ -47,6 +49,10 @@ class ContactCandidates {
   ContactCandidates(std::shared_ptr<const ContactSurface> surface, ConstVectors rest,
                     double contact_distance);
 
+  /// From the next update on, no feature of triangle first forms a pair with one of triangle second; by
+  /// default all do.
+  void leave_free(std::span<const std::array<int, 2>> triangles);
+
   /// Finds the pairs that may come within range while every point stays in the box of its positions at
   /// `begin` and `end` (#P by 3, [m]), widened by `margin` [m] on all sides.
   void update(ConstVectors begin, ConstVectors end, double margin);
@@ -65,11 +71,17 @@ class ContactCandidates {
 
  private:
   void limit_by_rest(ContactPair& pair) const;
-  void add(PairKind kind, int first, int second, ConstVectors begin, std::vector<ContactPair>& out) const;
+  ContactPair make_pair(PairKind kind, int first, int second) const;
+  bool is_free(PairKind kind, int first, int second) const;
+  /// Appends those that may come into range.
+  template <class Pair>
+  void add_near(PairKind kind, std::span<const Pair> found, std::vector<ContactPair>& out) const;
+  void add_near_plane(int plane);
 
   std::shared_ptr<const ContactSurface> surface_;
   double contact_distance_;
   PairSearch search_;
+  PairCulling culling_;
   FeaturePairs found_;
   std::vector<Vec3> lower_, upper_;
   std::vector<ContactPair> pairs_;
@@ -78,6 +90,7 @@ class ContactCandidates {
     double distance;
   };
   std::vector<RestDistance> rest_distances_;  // by key, of the close pairs alone
+  std::vector<std::uint64_t> free_;           // ascending keys
 };
 
 }  // namespace muslin

@@ -12,24 +12,32 @@ struct Law {
   double value = 0, slope = 0, curvature = 0;
 };
 
-/// Energy b(g) of a gap g [m] for stiffness 1 N/m: a spring within the range d̂ [m], a logarithm within half
-/// of it, joined with continuous second derivative at τ = d̂/2; without bound at zero. Two-stage as in Li,
-/// Kaufman, Jiang, Codimensional Incremental Potential Contact (2021), and in the prototype this follows.
+/// Energy b(g) of a gap g [m] for stiffness 1 N/m: a spring within the range d̂ [m], and within τ = d̂/2 some
+/// of a barrier as well (Li et al., Incremental Potential Contact, 2020, eq. 6), without bound at zero; twice
+/// continuously differentiable.
 ///
 ///   g ≥ d̂      0
 ///   g ≥ τ      ½ (d̂ − g)²
-///   g > 0      ½ τ² − τ² ln(g/τ)
+///   g > 0      ½ (d̂ − g)² − β (τ − g)² ln(g/τ),   β = 0.2
 ///   else       ∞
+///
+/// A weak barrier is enough, because nothing relies on it to keep surfaces apart; a strong one takes many
+/// iterations where folds meet at speed (docs/theory/contact.md).
 inline Law contact_law(double gap, double range) {
+  constexpr double beta = 0.2;
   if (gap >= range) return {};
-  const double half = range / 2;
-  if (gap >= half) return {(range - gap) * (range - gap) / 2, gap - range, 1};
+  Law law = {(range - gap) * (range - gap) / 2, gap - range, 1};
+  const double near = range / 2;
+  if (gap >= near) return law;
   if (!(gap > 0)) {
     const double infinite = std::numeric_limits<double>::infinity();
     return {infinite, -infinite, infinite};
   }
-  const double square = half * half;
-  return {square / 2 - square * std::log(gap / half), -square / gap, square / (gap * gap)};
+  const double depth = near - gap, log = std::log(gap / near), steep = depth / gap;
+  law.value -= beta * depth * depth * log;
+  law.slope += beta * depth * (2 * log - steep);
+  law.curvature += beta * (steep * (4 + steep) - 2 * log);
+  return law;
 }
 
 /// Friction for a limit force μ N of 1 N, as an energy of the slip length s ≥ 0 [m]: smooth below `stick`

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "muslin/contact/intersections.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/stopwatch.hpp"
 
@@ -15,6 +16,9 @@ constexpr double margin_share = 0.5;
 /// Displacements of more edges than this are limited in pieces, of which there are no more than so many.
 constexpr double edges_at_once = 2;
 constexpr int most_pieces = 256;
+/// Of the gap floor in converged steps, for which contact has to hold whatever presses; fast ones rely on the
+/// limiter.
+constexpr double converged_floor = 0.01;
 /// Friction is full at this speed [m/s].
 constexpr double stick_speed = 1e-3;
 
@@ -30,21 +34,36 @@ double mean_edge(const ContactSurface& surface, ConstVectors rest) {
   return count > 0 ? sum / count : std::numeric_limits<double>::infinity();
 }
 
+StepLimits limits_of(const ContactModel& model) {
+  StepLimits limits = model.limits;
+  if (model.mode == ContactMode::converged) limits.gap_floor *= converged_floor;
+  return limits;
+}
+
 }  // namespace
 
 ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model)
     : model_(std::move(model)),
       candidates_(model_->surface, model_->rest, model_->distance),
-      limiter_(model_->map, model_->limits),
+      limiter_(model_->map, limits_of(*model_)),
       margin_(margin_share * model_->distance),
       longest_(std::max(edges_at_once * mean_edge(*model_->surface, model_->rest), 4 * model_->distance)),
       friction_{model_->friction, stick_speed},
       x_(model_->map->point_count()),
-      to_(model_->map->point_count()) {}
+      to_(model_->map->point_count()) {
+  for (const ContactBody& body : model_->surface->bodies()) {
+    if (*std::max_element(body.frame.begin(), body.frame.end()) >=
+        static_cast<int>(model_->map->vertex_count()))
+      throw Error(ErrorKind::usage, "a body's frame has a vertex that does not exist", "check the indices");
+  }
+}
 
-void ContactGuard::begin(ConstVectors q, double length) {
+void ContactGuard::begin(ConstVectors q, double length, std::span<const std::uint8_t> held) {
   start_.assign(q.begin(), q.end());
   friction_.stick_length = stick_speed * length;
+  held_.assign(held.begin(), held.end());
+  const std::vector<std::uint8_t>& prescribed = model_->limits.prescribed;
+  for (std::size_t v = 0; v < prescribed.size(); ++v) held_[v] |= prescribed[v];
 }
 
 void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end) {
@@ -99,7 +118,7 @@ void ContactGuard::limit(ConstVectors q, Vectors d) {
   shorten(d);
   cover(q, d);
   const Stopwatch watch(counts_.limit_seconds);
-  const LimitReport report = limiter_.limit(candidates_, q, d);
+  const LimitReport report = limiter_.limit(candidates_, q, d, held_);
   ++counts_.limits;
   counts_.deflected += report.deflected;
   counts_.shortened += report.shortened;
@@ -111,12 +130,11 @@ void ContactGuard::advance(Vectors q, ConstVectors d) {
   const double needed = std::ceil(farthest / longest_);
   const int pieces = needed < most_pieces ? std::max(1, static_cast<int>(needed)) : most_pieces;
   const std::vector<Vec3> from(q.begin(), q.end());
-  const StepLimits& limits = model_->limits;
   piece_.resize(q.size());
   for (int k = 1; k <= pieces; ++k) {
     for (std::size_t v = 0; v < q.size(); ++v) {
       // What moves along keyframes makes up for where it was held; what is pushed aside does not come back.
-      const bool prescribed = !limits.prescribed.empty() && limits.prescribed[v] != 0;
+      const bool prescribed = held_[v] != 0;
       piece_[v] =
           prescribed ? Vec3(from[v] + static_cast<double>(k) / pieces * d[v] - q[v]) : Vec3(d[v] / pieces);
     }
@@ -139,6 +157,32 @@ void ContactGuard::end(ConstVectors q) {
   memory_.slips = potential_->slips(q);
   model_->map->apply(q, x_);
   memory_.smallest_gap = candidates_.smallest_gap(x_);
+  if (!tangled_.empty()) leave_tangled(q);
+}
+
+/// Pairs of triangles that cross at q.
+std::vector<std::array<int, 2>> ContactGuard::crossing(ConstVectors q) {
+  const ContactSurface& surface = *model_->surface;
+  model_->map->apply(q, x_);
+  IntersectionOptions options;
+  options.wanted = [&](int a, int b) {
+    const auto body = [&](int t) {
+      return surface.body_of(surface.triangles()[static_cast<std::size_t>(t)][0]);
+    };
+    return surface.may_touch(body(a), body(b));
+  };
+  std::vector<std::array<int, 2>> pairs;
+  for (const Intersection& i : find_intersections(x_, surface.triangles(), options))
+    pairs.push_back({i.first, i.second});
+  return pairs;
+}
+
+void ContactGuard::leave_tangled(ConstVectors q) {
+  std::vector<std::array<int, 2>> now = crossing(q);
+  if (now == tangled_) return;
+  tangled_ = std::move(now);
+  candidates_.leave_free(tangled_);
+  if (!memory_.begin.empty()) candidates_.update(memory_.begin, memory_.end, margin_);
 }
 
 void ContactGuard::restore(ContactMemory memory) {

@@ -2,6 +2,7 @@
 // step to step what sticks.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -39,11 +40,17 @@ class ContactGuard : public StepGuard {
  public:
   explicit ContactGuard(std::shared_ptr<const ContactModel> model);
 
-  void begin(ConstVectors q, double length) override;
+  void begin(ConstVectors q, double length, std::span<const std::uint8_t> held) override;
   void limit(ConstVectors q, Vectors d) override;
   void advance(Vectors q, ConstVectors d) override;
   const Potential& potential(ConstVectors q) override;
   void end(ConstVectors q) override;
+
+  /// Leaves the features of triangles that cross at q free of each other until these part. While some are
+  /// crossing, others beside them may begin to; once none is, nothing ever crosses again.
+  void leave_tangled(ConstVectors q);
+  /// How many pairs of triangles cross still, of those left free.
+  std::size_t tangled() const { return tangled_.size(); }
 
   /// The potential asked for last.
   const ContactPotential& last_potential() const { return *potential_; }
@@ -54,6 +61,7 @@ class ContactGuard : public StepGuard {
   const ContactCounts& counts() const { return counts_; }
 
  private:
+  std::vector<std::array<int, 2>> crossing(ConstVectors q);
   void find_candidates(ConstVectors begin, ConstVectors end);
   void cover(ConstVectors q, ConstVectors d);
   void shorten(Vectors d) const;
@@ -64,7 +72,9 @@ class ContactGuard : public StepGuard {
   double margin_;   ///< by which boxes of candidates are wider than the motion [m]
   double longest_;  ///< displacement that is limited in one piece [m]
   Friction friction_;
+  std::vector<std::array<int, 2>> tangled_;
   std::vector<Vec3> start_;  ///< q where the step began
+  std::vector<std::uint8_t> held_;
   std::optional<ContactPotential> potential_;
   ContactMemory memory_;
   ContactCounts counts_;

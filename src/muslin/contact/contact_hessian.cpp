@@ -21,18 +21,21 @@ ContactHessian::ContactHessian(const SurfaceMap& map, const std::vector<ContactR
     rows_.push_back({row.normal, row.normal_stiffness, row.tangential});
     // The contact's weights on vertices: points of one pair may hang on the same ones.
     entries.clear();
+    const auto add = [&](int vertex, double weight) {
+      const auto same = std::find_if(entries.begin(), entries.end(),
+                                     [&](const Entry& known) { return known.index == vertex; });
+      if (same != entries.end()) {
+        same->weight += weight;
+      } else {
+        entries.push_back({vertex, weight});
+      }
+    };
     for (std::size_t i = 0; i < 4; ++i) {
       if (row.points[i] < 0 || row.weights[i] == 0) continue;
-      for (const SurfaceMap::Entry& e : map.row(static_cast<std::size_t>(row.points[i]))) {
-        const auto same = std::find_if(entries.begin(), entries.end(),
-                                       [&](const Entry& known) { return known.index == e.vertex; });
-        if (same != entries.end()) {
-          same->weight += row.weights[i] * e.weight;
-        } else {
-          entries.push_back({e.vertex, row.weights[i] * e.weight});
-        }
-      }
+      for (const SurfaceMap::Entry& e : map.row(static_cast<std::size_t>(row.points[i])))
+        add(e.vertex, row.weights[i] * e.weight);
     }
+    for (const SurfaceMap::Entry& e : row.carried) add(e.vertex, e.weight);
     for (const Entry& e : entries) ++vertex_offsets_[static_cast<std::size_t>(e.index) + 1];
     by_row_.insert(by_row_.end(), entries.begin(), entries.end());
     row_offsets_.push_back(static_cast<int>(by_row_.size()));

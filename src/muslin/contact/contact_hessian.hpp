@@ -1,10 +1,11 @@
 // The positive semidefinite Hessian of contact at one position, ready for many products:
 //
-//   H = Σ Aᵀ (a n nᵀ + b (I − n nᵀ)) A,   A u = Σ wᵢ (J u)ᵢ the relative motion at a contact.
+//   H = Σ Aᵀ (a n nᵀ + b (I − n nᵀ)) A,   A u = Σ wᵢ (J u)ᵢ + Σ wⱼ uⱼ the relative motion at a contact.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "muslin/contact/surface_map.hpp"
@@ -18,6 +19,8 @@ struct ContactRow {
   Vec3 normal = Vec3::Zero();
   double normal_stiffness = 0;  ///< a ≥ 0 [N/m]
   double tangential = 0;        ///< b ≥ 0 [N/m]
+  /// Vertices with weights of their own, besides those of the points.
+  std::span<const SurfaceMap::Entry> carried;
 };
 
 /// As a potential it is the quadratic ½ qᵀ H q.

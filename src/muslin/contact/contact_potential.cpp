@@ -18,8 +18,9 @@ namespace {
 constexpr std::size_t grain = 512;
 /// Pairs this many ranges apart are taken along: they may come into range in the iteration.
 constexpr double ranges_ahead = 1.5;
-/// Edges fade out over this share of their length, and below this squared sine of their angle.
-constexpr double end_share = 0.05, parallel_share = 1e-3;
+/// Edges fade out towards their ends over this share of the range, where the vertex there is in range as
+/// well, but of no more than this share of their length; and below this squared sine of their angle.
+constexpr double end_ranges = 0.5, end_share = 0.05, parallel_share = 1e-3;
 
 /// Less weight of a corner than this is rounding: the closest point lies on the edge opposite to it.
 constexpr double least_weight = 1e-6;
@@ -40,7 +41,11 @@ double contact_share(const ContactSurface& surface, const ContactPair& pair, con
     const Vec3 u = position(1) - position(0), v = position(3) - position(2);
     const double sine = u.cross(v).squaredNorm() / std::max(u.squaredNorm() * v.squaredNorm(), 1e-300);
     const double apart = std::min(1.0, sine / parallel_share);
-    return faded(at.weights[1], end_share) * faded(-at.weights[3], end_share) * apart * (2 - apart);
+    const auto width = [&](double squared_length) {
+      return std::min(end_share, end_ranges * pair.range / std::sqrt(std::max(squared_length, 1e-300)));
+    };
+    return faded(at.weights[1], width(u.squaredNorm())) * faded(-at.weights[3], width(v.squaredNorm())) *
+           apart * (2 - apart);
   }
   std::array<int, 3> corners{};
   std::size_t count = 0;
@@ -93,13 +98,12 @@ ContactPotential::ContactPotential(const ContactCandidates& candidates, std::sha
   const ConstVectors x = points(lagged, buffer), x_start = points(start, start_buffer);
   const std::span<const ContactPair> all = candidates.pairs();
   std::vector<std::vector<Pair>> parts((all.size() + grain - 1) / grain);
-  std::vector<std::uint8_t> touching(parts.size(), 0);
+  std::vector<std::vector<Carried>> carried_parts(parts.size());
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const PairGeometry at = pair_geometry(*surface_, all[i], x);
       const double gap = at.distance - all[i].thickness;
-      if (gap >= ranges_ahead * all[i].range) continue;
-      if (!(gap > 0)) touching[begin / grain] = 1;
+      if (gap >= ranges_ahead * all[i].range || !(gap > 0)) continue;
       const double share = contact_share(*surface_, all[i], at, x);
       if (share <= 0) continue;
       Pair pair;
@@ -108,9 +112,17 @@ ContactPotential::ContactPotential(const ContactCandidates& candidates, std::sha
       pair.normal = at.normal;
       pair.weights = at.weights;
       pair.begin.setZero();
-      if (friction.coefficient > 0) {
+      if (friction.coefficient > 0 && gap < all[i].range) {
         pair.friction = -friction.coefficient * pair.stiffness * contact_law(gap, all[i].range).slope;
-        pair.begin = combined(all[i], at.weights, x_start);
+        Carried carried;
+        carry(pair, at, x, lagged, carried);
+        pair.begin = combined(all[i], pair.weights, x_start);
+        for (const SurfaceMap::Entry& e : carried.span())
+          pair.begin += e.weight * start[static_cast<std::size_t>(e.vertex)];
+        if (carried.count > 0) {
+          pair.carried = static_cast<int>(carried_parts[begin / grain].size());
+          carried_parts[begin / grain].push_back(carried);
+        }
         const std::uint64_t key = all[i].key();
         const auto known = std::lower_bound(slips.begin(), slips.end(), key,
                                             [](const PairSlip& s, std::uint64_t k) { return s.key < k; });
@@ -119,9 +131,13 @@ ContactPotential::ContactPotential(const ContactCandidates& candidates, std::sha
       parts[begin / grain].push_back(pair);
     }
   });
-  if (std::any_of(touching.begin(), touching.end(), [](std::uint8_t t) { return t != 0; }))
-    throw Error(ErrorKind::usage, "surfaces touch where contact begins", "start without intersections");
-  for (const auto& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
+  for (std::size_t b = 0; b < parts.size(); ++b) {
+    for (Pair& pair : parts[b]) {
+      if (pair.carried >= 0) pair.carried += static_cast<int>(carried_.size());
+    }
+    pairs_.insert(pairs_.end(), parts[b].begin(), parts[b].end());
+    carried_.insert(carried_.end(), carried_parts[b].begin(), carried_parts[b].end());
+  }
 
   offsets_.assign(surface_->point_count() + 1, 0);
   for (const Pair& pair : pairs_)
@@ -145,8 +161,50 @@ ConstVectors ContactPotential::points(ConstVectors q, std::vector<Vec3>& buffer)
   return buffer;
 }
 
-Vec3 ContactPotential::slip(const Pair& pair, ConstVectors x) const {
-  return tangential(combined(pair.pair, pair.weights, x) - pair.begin, pair.normal);
+/// Where a feature belongs to a body with a frame: the point of its surface that touches, by the frame's
+/// vertices; its points no longer count.
+void ContactPotential::carry(Pair& pair, const PairGeometry& at, ConstVectors x, ConstVectors q,
+                             Carried& carried) const {
+  const int count = pair.pair.point_count(), size_a = first_feature_size(pair.pair.kind);
+  for (const bool first : {true, false}) {
+    const int from = first ? 0 : size_a, to = first ? size_a : count;
+    const ContactBody& body = surface_->body_at(pair.pair.points[static_cast<std::size_t>(from)]);
+    if (body.frame[0] < 0) continue;
+    const double sign = first ? 1 : -1;
+    Vec3 point = Vec3::Zero();
+    for (int i = from; i < to; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      point += sign * at.weights[k] * x[static_cast<std::size_t>(pair.pair.points[k])];
+    }
+    point -= sign * body.radius * at.normal;
+    const auto corner = [&](std::size_t k) -> const Vec3& {
+      return q[static_cast<std::size_t>(body.frame[k])];
+    };
+    Mat3 edges;
+    for (std::size_t k = 1; k < 4; ++k) edges.col(static_cast<Eigen::Index>(k) - 1) = corner(k) - corner(0);
+    const Vec3 share = edges.inverse() * (point - corner(0));
+    if (!share.allFinite()) continue;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double weight = k == 0 ? 1 - share.sum() : share[static_cast<Eigen::Index>(k) - 1];
+      carried.entries[carried.count++] = {body.frame[k], sign * weight};
+    }
+    for (int i = from; i < to; ++i) pair.weights[static_cast<std::size_t>(i)] = 0;
+  }
+}
+
+std::span<const SurfaceMap::Entry> ContactPotential::carried(const Pair& pair) const {
+  if (pair.carried < 0) return {};
+  return carried_[static_cast<std::size_t>(pair.carried)].span();
+}
+
+Vec3 ContactPotential::relative(const Pair& pair, ConstVectors x, ConstVectors q) const {
+  Vec3 sum = combined(pair.pair, pair.weights, x);
+  for (const SurfaceMap::Entry& e : carried(pair)) sum += e.weight * q[static_cast<std::size_t>(e.vertex)];
+  return sum;
+}
+
+Vec3 ContactPotential::slip(const Pair& pair, ConstVectors x, ConstVectors q) const {
+  return tangential(relative(pair, x, q) - pair.begin, pair.normal);
 }
 
 ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
@@ -159,7 +217,7 @@ ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
       const double gap = pair_geometry(*surface_, pair.pair, x).distance - pair.pair.thickness;
       sum.pressed += pair.stiffness * contact_law(gap, pair.pair.range).value;
       if (pair.friction > 0)
-        sum.rubbed += pair.friction * friction_law(slip(pair, x).norm(), friction_.stick_length).value;
+        sum.rubbed += pair.friction * friction_law(slip(pair, x, q).norm(), friction_.stick_length).value;
     }
     return sum;
   });
@@ -173,7 +231,7 @@ double ContactPotential::value(ConstVectors q) const {
 void ContactPotential::add_gradient(ConstVectors q, Vectors g) const {
   std::vector<Vec3> buffer;
   const ConstVectors x = points(q, buffer);
-  std::vector<Vec3> forces(4 * pairs_.size());
+  std::vector<Vec3> forces(4 * pairs_.size()), rubs(carried_.size());
   parallel_for(pairs_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Pair& pair = pairs_[i];
@@ -182,9 +240,10 @@ void ContactPotential::add_gradient(ConstVectors q, Vectors g) const {
           pair.stiffness * contact_law(at.distance - pair.pair.thickness, pair.pair.range).slope;
       Vec3 rub = Vec3::Zero();
       if (pair.friction > 0) {
-        const Vec3 e = slip(pair, x);
+        const Vec3 e = slip(pair, x, q);
         rub = pair.friction * friction_law(e.norm(), friction_.stick_length).curvature * e;
       }
+      if (pair.carried >= 0) rubs[static_cast<std::size_t>(pair.carried)] = rub;
       for (std::size_t k = 0; k < 4; ++k)
         forces[4 * i + k] = at.weights[k] * slope * at.normal + pair.weights[k] * rub;
     }
@@ -200,6 +259,10 @@ void ContactPotential::add_gradient(ConstVectors q, Vectors g) const {
         target[p] += forces[static_cast<std::size_t>(places_[static_cast<std::size_t>(k)])];
   });
   if (!direct) map_->add_transpose(sums, g);
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    for (const SurfaceMap::Entry& e : carried(pairs_[i]))
+      g[static_cast<std::size_t>(e.vertex)] += e.weight * rubs[static_cast<std::size_t>(pairs_[i].carried)];
+  }
 }
 
 /// The Hessian at one q.
@@ -219,13 +282,13 @@ class ContactPotential::Hessian : public ContactHessian {
         const PairGeometry at = pair_geometry(*w.surface_, pair.pair, x);
         const double curvature =
             pair.stiffness * contact_law(at.distance - pair.pair.thickness, pair.pair.range).curvature;
-        all[2 * i] = {pair.pair.points, at.weights, at.normal, curvature, 0};
-        all[2 * i + 1] = {pair.pair.points, pair.weights, pair.normal, 0, 0};
+        all[2 * i] = {pair.pair.points, at.weights, at.normal, curvature, 0, {}};
+        all[2 * i + 1] = {pair.pair.points, pair.weights, pair.normal, 0, 0, w.carried(pair)};
         if (pair.friction <= 0) continue;
         const double secant =
-            pair.friction * friction_law(w.slip(pair, x).norm(), w.friction_.stick_length).curvature;
+            pair.friction * friction_law(w.slip(pair, x, q).norm(), w.friction_.stick_length).curvature;
         // One row is enough where nothing has moved since friction was lagged.
-        all[2 * i + (at.weights == pair.weights ? 0 : 1)].tangential = secant;
+        all[2 * i + (at.weights == pair.weights && pair.carried < 0 ? 0 : 1)].tangential = secant;
       }
     });
     std::erase_if(all,
@@ -286,7 +349,7 @@ std::vector<PairSlip> ContactPotential::slips(ConstVectors q) const {
   std::vector<PairSlip> result;
   for (const Pair& pair : pairs_) {
     if (pair.friction <= 0) continue;
-    Vec3 e = slip(pair, x);
+    Vec3 e = slip(pair, x, q);
     const double length = e.norm();
     if (length > friction_.stick_length) e *= friction_.stick_length / length;
     result.push_back({pair.pair.key(), e});

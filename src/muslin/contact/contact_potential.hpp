@@ -14,7 +14,8 @@
 //
 // Friction remembers. e is the slip since contact began, cut to `stick_length`: a spring that holds, so that
 // what rests does not creep (bristle model; Haessig, Friedland 1991), and the smoothed Coulomb force where it
-// slips.
+// slips. What slips over a round body is its surface, which turns: the point of a ball that touches is
+// carried by the ball's frame, as an affine combination of its four vertices.
 #pragma once
 
 #include <cstddef>
@@ -43,8 +44,9 @@ struct PairSlip {
 class ContactPotential : public Potential {
  public:
   /// For q near `lagged` (#V by 3, [m]), within the boxes of the candidates. `start` (#V by 3, [m]) are the
-  /// positions at the beginning of the step, `slips` those of the step before, by ascending key. Errors:
-  /// usage, if a coefficient is negative, sizes do not fit or a gap is not positive at `lagged`.
+  /// positions at the beginning of the step, `slips` those of the step before, by ascending key. Pairs
+  /// without a gap at `lagged` are left free. Errors: usage, if a coefficient is negative or sizes do not
+  /// fit.
   ContactPotential(const ContactCandidates& candidates, std::shared_ptr<const SurfaceMap> map,
                    ConstVectors lagged, Friction friction, ConstVectors start,
                    std::span<const PairSlip> slips = {});
@@ -78,18 +80,29 @@ class ContactPotential : public Potential {
     double friction = 0;              ///< μ λ, 0 if out of contact [N]
     Vec3 normal;                      ///< of friction
     std::array<double, 4> weights{};  ///< of friction
-    Vec3 begin;                       ///< slip is the tangential part of Σ weights x − begin
+    Vec3 begin;        ///< slip is the tangential part of Σ weights x + Σ carried q − begin
+    int carried = -1;  ///< which of carried_, −1: none
+  };
+  /// Material points of the two features, as far as they are of turning bodies.
+  struct Carried {
+    std::array<SurfaceMap::Entry, 8> entries;
+    std::size_t count = 0;
+    std::span<const SurfaceMap::Entry> span() const { return {entries.data(), count}; }
   };
   class Hessian;
 
   /// Positions of the surface points: q itself or `buffer`, filled.
   ConstVectors points(ConstVectors q, std::vector<Vec3>& buffer) const;
-  Vec3 slip(const Pair& pair, ConstVectors x) const;
+  void carry(Pair& pair, const PairGeometry& at, ConstVectors x, ConstVectors q, Carried& carried) const;
+  std::span<const SurfaceMap::Entry> carried(const Pair& pair) const;
+  Vec3 relative(const Pair& pair, ConstVectors x, ConstVectors q) const;
+  Vec3 slip(const Pair& pair, ConstVectors x, ConstVectors q) const;
 
   std::shared_ptr<const ContactSurface> surface_;
   std::shared_ptr<const SurfaceMap> map_;
   Friction friction_;
   std::vector<Pair> pairs_;
+  std::vector<Carried> carried_;
   // The pairs at each point: 4 · pair + place, by point.
   std::vector<int> offsets_, places_;
 };

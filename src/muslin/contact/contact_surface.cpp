@@ -27,6 +27,9 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
     if (!(body.radius >= 0)) throw Error(ErrorKind::usage, "a contact radius is negative", "give 0 or more");
     if (!(body.stiffness > 0))
       throw Error(ErrorKind::usage, "a contact stiffness is not positive", "give newtons per metre");
+    if (*std::min_element(body.frame.begin(), body.frame.end()) < 0 &&
+        *std::max_element(body.frame.begin(), body.frame.end()) >= 0)
+      throw Error(ErrorKind::usage, "a body's frame lacks a vertex", "give four or none");
   }
   for (std::size_t a = 0; a < bodies_.size(); ++a) {
     for (std::size_t b = a; b < bodies_.size() && std::isinf(bodies_[a].stiffness); ++b) {

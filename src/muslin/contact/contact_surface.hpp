@@ -23,6 +23,10 @@ struct ContactBody {
   /// Of a contact with this body [N/m]; that of a pair is the smaller one. About 0.15 of the membrane's
   /// Young's modulus × thickness of cloth; infinite where the other body decides.
   double stiffness = 150;
+  /// Of a body with a radius: the vertices of the degrees of freedom (not surface points) that carry it, at
+  /// the corners of a tetrahedron that has volume, so that friction knows how its surface turns. −1: it does
+  /// not.
+  std::array<int, 4> frame = {-1, -1, -1, -1};
 };
 
 /// A half-space that nothing enters: gap = normal·(x − x_point). The plane moves with its point and does not
@@ -60,7 +64,8 @@ class ContactSurface {
   std::span<const Ownership> ownership() const { return ownership_; }
 
   int body_of(int point) const { return body_of_point_[static_cast<std::size_t>(point)]; }
-  double radius_of(int point) const { return bodies_[static_cast<std::size_t>(body_of(point))].radius; }
+  const ContactBody& body_at(int point) const { return bodies_[static_cast<std::size_t>(body_of(point))]; }
+  double radius_of(int point) const { return body_at(point).radius; }
   bool may_touch(int body_a, int body_b) const {
     const ContactBody &a = bodies_[static_cast<std::size_t>(body_a)],
                       &b = bodies_[static_cast<std::size_t>(body_b)];
@@ -68,8 +73,7 @@ class ContactSurface {
   }
   /// Of a contact between the bodies of two points [N/m].
   double stiffness(int point_a, int point_b) const {
-    return std::min(bodies_[static_cast<std::size_t>(body_of(point_a))].stiffness,
-                    bodies_[static_cast<std::size_t>(body_of(point_b))].stiffness);
+    return std::min(body_at(point_a).stiffness, body_at(point_b).stiffness);
   }
   /// How many triangles share a point or an edge.
   int triangles_at_point(int p) const { return point_shares_[static_cast<std::size_t>(p)]; }

@@ -15,8 +15,10 @@ namespace {
 constexpr std::size_t grain = 1024;
 /// Points with less weight in the closest points do not make a pair approach.
 constexpr double least_weight = 0.01;
-/// The share of a gap that deflection leaves, and, near the floor, how many floors.
-constexpr double kept_share = 0.2, kept_floors = 1.5;
+/// The share of a gap, or of the contact distance if that is less, that deflection leaves, and, near the
+/// floor, how many floors. Less would press surfaces that meet at speed so close that their contact becomes
+/// too stiff for few iterations; but what pushes others along keyframes needs room to go on.
+constexpr double kept_share = 0.5, kept_before_pushing = 0.2, kept_floors = 1.5;
 /// Rounds of deflection: vertices against triangles, edges against edges, then both.
 constexpr int deflections = 6;
 /// The share of its safe way that a pair is given, so that it keeps some gap for the next step.
@@ -37,6 +39,7 @@ struct HalfSpace {
 struct StepLimiter::Work {
   const SurfaceMap& map;
   const StepLimits& limits;
+  std::span<const std::uint8_t> held;
   const ContactCandidates& candidates;
   std::span<const ContactPair> pairs;
   std::vector<Vec3> x, u;              ///< points and their steps
@@ -44,10 +47,11 @@ struct StepLimiter::Work {
   std::vector<std::uint8_t> moved;     ///< points whose step has changed since the pairs were last judged
   std::vector<double> factors;         ///< how much of their step pairs may take, 1 for nearly all
 
-  Work(const SurfaceMap& map_, const StepLimits& limits_, const ContactCandidates& candidates_,
-       ConstVectors q)
+  Work(const SurfaceMap& map_, const StepLimits& limits_, std::span<const std::uint8_t> held_,
+       const ContactCandidates& candidates_, ConstVectors q)
       : map(map_),
         limits(limits_),
+        held(held_),
         candidates(candidates_),
         pairs(candidates_.pairs()),
         x(map_.point_count()),
@@ -63,9 +67,9 @@ struct StepLimiter::Work {
   }
 
   bool is_prescribed(int point) const {
-    if (limits.prescribed.empty()) return false;
+    if (held.empty()) return false;
     for (const SurfaceMap::Entry& e : map.row(static_cast<std::size_t>(point)))
-      if (limits.prescribed[static_cast<std::size_t>(e.vertex)] == 0) return false;
+      if (held[static_cast<std::size_t>(e.vertex)] == 0) return false;
     return true;
   }
 
@@ -79,7 +83,10 @@ struct StepLimiter::Work {
   /// How much of its step a pair may take.
   double safe_factor(const ContactPair& pair, const PairGeometry& at) const {
     if (at.distance <= 0) return 1;
-    const double required = std::min(pair.thickness + limits.gap_floor, at.distance * (1 - 1e-6));
+    // What is closer than the floor, or than its thickness, comes no closer.
+    const double gap = at.distance - pair.thickness;
+    const double required =
+        gap > 0 ? pair.thickness + std::min(limits.gap_floor, gap * (1 - 1e-6)) : at.distance * (1 - 1e-6);
     if (pair.kind == PairKind::point_plane) {
       const double approach = at.normal.dot(step(pair, 1) - step(pair, 0));
       return approach <= at.distance - required ? 1 : (at.distance - required) / approach;
@@ -135,12 +142,14 @@ struct StepLimiter::Work {
       (i < size_a ? approach_a : approach_b) -= weight * at.normal.dot(step(pair, i));
       before += weight * at.normal.dot(position(pair, i));
     }
-    const double gap = before - pair.thickness;
-    const double kept = std::max(kept_floors * limits.gap_floor, kept_share * gap);
-    const double slack = std::max(0.0, gap - kept);
-    if (approach_a + approach_b <= slack) return;
     const bool a_yields = !is_prescribed(pair.points[0]);
     const bool b_yields = !is_prescribed(pair.points[static_cast<std::size_t>(size_a)]);
+    const bool pushes = (!a_yields && approach_a > 0) || (!b_yields && approach_b > 0);
+    const double gap = before - pair.thickness;
+    const double kept = std::max(kept_floors * limits.gap_floor,
+                                 (pushes ? kept_before_pushing : kept_share) * std::min(gap, pair.range));
+    const double slack = std::max(0.0, gap - kept);
+    if (approach_a + approach_b <= slack) return;
     // Each side may use the slack in proportion to its approach; one that recedes leaves its way to the
     // other, and what moves along keyframes is given way to.
     double most_a = approach_a, most_b = approach_b;
@@ -202,7 +211,7 @@ struct StepLimiter::Work {
     std::vector<std::uint8_t> changed(dq.size(), 0);
     parallel_for(dq.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        if (!limits.prescribed.empty() && limits.prescribed[v] != 0) continue;
+        if (!held.empty() && held[v] != 0) continue;
         for (int i = offsets[v]; i < offsets[v + 1]; ++i) {
           const HalfSpace& h = *by_vertex[static_cast<std::size_t>(i)];
           const double excess = h.direction.dot(dq[v]) - h.most;
@@ -314,12 +323,14 @@ StepLimiter::StepLimiter(std::shared_ptr<const SurfaceMap> map, StepLimits limit
     throw Error(ErrorKind::usage, "a step limiter needs one entry for each vertex", "give #V or none");
 }
 
-LimitReport StepLimiter::limit(const ContactCandidates& candidates, ConstVectors q, Vectors dq) const {
+LimitReport StepLimiter::limit(const ContactCandidates& candidates, ConstVectors q, Vectors dq,
+                               std::span<const std::uint8_t> held) const {
+  if (held.empty()) held = limits_.prescribed;
   if (q.size() != map_->vertex_count() || dq.size() != q.size() ||
       candidates.surface().point_count() != map_->point_count())
     throw Error(ErrorKind::usage, "a step limiter needs one position for each vertex", "give #V positions");
   LimitReport report;
-  Work work(*map_, limits_, candidates, q);
+  Work work(*map_, limits_, held, candidates, q);
   std::vector<std::uint8_t> deflected(q.size(), 0);
   // Vertices first: what slides over a sheet would else be held by the edges that it passes.
   for (int round = 0; round < deflections && work.judge(dq); ++round) {

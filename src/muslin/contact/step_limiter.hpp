@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "muslin/contact/contact_candidates.hpp"
@@ -47,7 +48,9 @@ class StepLimiter {
   /// Changes the step `dq` (#V by 3, [m]) from q such that no pair of the candidates comes closer than its
   /// thickness + gap floor, or, if it is closer than that at q, any closer, all along the straight way to
   /// q + dq. Points J q must lie in the boxes of the candidates. Pairs at distance zero are left free.
-  LimitReport limit(const ContactCandidates& candidates, ConstVectors q, Vectors dq) const;
+  /// `held`, #V or none: vertices that others give way to in this step, instead of those prescribed.
+  LimitReport limit(const ContactCandidates& candidates, ConstVectors q, Vectors dq,
+                    std::span<const std::uint8_t> held = {}) const;
 
  private:
   struct Work;

@@ -2,6 +2,9 @@
 // solver asks a guard before it moves anything; contact is one (contact/contact_guard.hpp).
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/potential.hpp"
 
@@ -12,8 +15,9 @@ class StepGuard {
  public:
   virtual ~StepGuard() = default;
 
-  /// A step of `length` [s] begins at x; one that was begun and not ended is forgotten.
-  virtual void begin(ConstVectors x, double length) = 0;
+  /// A step of `length` [s] begins at x; one that was begun and not ended is forgotten. Others give way to
+  /// vertices v for which held[v] (#V) is not 0.
+  virtual void begin(ConstVectors x, double length, std::span<const std::uint8_t> held) = 0;
 
   /// Changes the displacement d from x, vertex by vertex, such that the straight way to x + t d is safe for
   /// all t in [0, 1]. `x` must have been reached from where the step began by such ways only.

@@ -43,10 +43,15 @@ struct RunCosts {
   std::int64_t deflected = 0, shortened = 0;  ///< vertices, summed over limits
 };
 
+struct SimulationOptions {
+  /// Start although surfaces cross: these are left free of each other until they part.
+  bool allow_tangled = false;
+};
+
 class Simulation {
  public:
-  /// Errors: input, if surfaces cross at the start; usage, if symplectic_euler meets contact.
-  explicit Simulation(std::shared_ptr<const Model> model);
+  /// Errors: input, if surfaces cross at the start and may not; usage, if symplectic_euler meets contact.
+  explicit Simulation(std::shared_ptr<const Model> model, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -56,6 +61,7 @@ class Simulation {
   int frame() const;                       ///< the last finished frame
   int steps_done() const;                  ///< steps of the frame in work; 0 unless it was interrupted
   const Diagnostics& diagnostics() const;  ///< of the last finished frame
+  std::size_t tangled() const;             ///< pairs of triangles that cross still, where that is allowed
   RunCosts costs() const;
 
   /// Advances to the end of the next frame. A step that fails is halved, up to 8 times; if that fails too,

@@ -19,10 +19,13 @@ constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-3, fast_forcing = 
 class GuardedStep {
  public:
   GuardedStep(const StepProblem& problem, const IncrementalPotential& function,
-              const SolverSettings& settings, Vectors x, NewtonWorkspace& workspace)
+              const SolverSettings& settings, const State& state, double length, Vectors x,
+              NewtonWorkspace& workspace)
       : problem_(problem),
         function_(function),
         settings_(settings),
+        state_(state),
+        length_(length),
         guard_(*problem.guard),
         x_(x),
         workspace_(workspace),
@@ -88,11 +91,28 @@ class GuardedStep {
   }
 
  private:
-  /// To the inertial prediction and the targets.
+  /// To where the motion goes on as in the last step, or to the inertial prediction if that is lower; held
+  /// vertices to their targets.
   void start() {
-    for_each_vertex(count_, [&](std::size_t v) {
-      d_[v] = (function_.held(v) ? problem_.targets[v] : function_.prediction()[v]) - x_[v];
-    });
+    std::vector<Vec3>& there = workspace_.x;
+    const auto set = [&](const auto& free) {
+      for_each_vertex(
+          count_, [&](std::size_t v) { there[v] = function_.held(v) ? problem_.targets[v] : Vec3(free(v)); });
+      return function_.value(there).value;
+    };
+    const auto displacement = [&] {
+      for_each_vertex(count_, [&](std::size_t v) { d_[v] = there[v] - x_[v]; });
+    };
+    const double inertial = set([&](std::size_t v) { return function_.prediction()[v]; });
+    displacement();
+    if (!state_.previous_velocities.empty() && state_.previous_dt > 0) {
+      const double change = length_ / state_.previous_dt;
+      const double goes_on = set([&](std::size_t v) {
+        return Vec3(x_[v] + length_ * (state_.velocities[v] +
+                                       change * (state_.velocities[v] - state_.previous_velocities[v])));
+      });
+      if (goes_on < inertial) displacement();
+    }
     guard_.advance(x_, d_);
     held_back_ = land_held_vertices(problem_, x_);
     value_ = function_.value_and_gradient(x_, base_);
@@ -161,6 +181,8 @@ class GuardedStep {
   const StepProblem& problem_;
   const IncrementalPotential& function_;
   const SolverSettings& settings_;
+  const State& state_;
+  double length_;  ///< of the step [s]
   StepGuard& guard_;
   Vectors x_;
   NewtonWorkspace& workspace_;
@@ -192,8 +214,9 @@ int land_held_vertices(const StepProblem& problem, Vectors x) {
 }
 
 StepReport minimize_guarded(const StepProblem& problem, const IncrementalPotential& function,
-                            const SolverSettings& settings, Vectors x, NewtonWorkspace& workspace) {
-  return GuardedStep(problem, function, settings, x, workspace).run();
+                            const SolverSettings& settings, const State& state, double length, Vectors x,
+                            NewtonWorkspace& workspace) {
+  return GuardedStep(problem, function, settings, state, length, x, workspace).run();
 }
 
 }  // namespace muslin

@@ -8,13 +8,15 @@ namespace muslin {
 /// Moves x, which is where the step begins, to the end of the step, in place; held vertices to their targets
 /// as far as the guard lets them. `function` is made of `problem` and lacks the guard's potential.
 ///
-/// The start is the inertial prediction, as far as the guard lets it. Each iteration asks for the contact
-/// potential anew, solves H s = −g, has the step limited and backtracks along what is left of it. The
-/// residual is that of contact and friction as they are at the x it belongs to: at its end a converged step
-/// is a fixed point of what is lagged. A fast step ends after its iterations and reports what residual
-/// remains.
+/// The start is the inertial prediction, or, if that is lower, where the motion of `state` goes on with the
+/// change of velocity of the last step, for `length` [s]; as far as the guard lets it. Each iteration asks
+/// for the contact potential anew, solves H s = −g, has the step limited and backtracks along what is left of
+/// it. The residual is that of contact and friction as they are at the x it belongs to: at its end a
+/// converged step is a fixed point of what is lagged. A fast step ends after its iterations and reports what
+/// residual remains.
 StepReport minimize_guarded(const StepProblem& problem, const IncrementalPotential& function,
-                            const SolverSettings& settings, Vectors x, NewtonWorkspace& workspace);
+                            const SolverSettings& settings, const State& state, double length, Vectors x,
+                            NewtonWorkspace& workspace);
 
 /// Puts held vertices exactly on their targets if nothing but rounding keeps them away; returns how many
 /// others there are.

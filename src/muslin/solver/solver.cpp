@@ -71,7 +71,7 @@ StepReport solve_implicit(const SolverSettings& settings, const StepContext& con
   const IncrementalPotential function(problem, context.inertial_prediction, context.dt);
   if (problem.guard) {
     x = state.positions;
-    return minimize_guarded(problem, function, settings, x, workspace);
+    return minimize_guarded(problem, function, settings, state, context.length, x, workspace);
   }
   x = warm_start(function, problem, state, context.length);
   if (x.empty()) return failed("the held vertices cannot reach their targets within this step");
@@ -196,7 +196,7 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
     if (settings.integrator == Integrator::symplectic_euler)
       throw Error(ErrorKind::usage, "symplectic_euler does not work with contact",
                   "use implicit_euler, bdf2 or linearly_implicit_euler");
-    problem.guard->begin(state.positions, context.length);
+    problem.guard->begin(state.positions, context.length, problem.fixed);
   }
   switch (settings.integrator) {
     case Integrator::implicit_euler:

@@ -1,0 +1,185 @@
+#include "muslin/contact/pair_culling.hpp"
+
+#include <algorithm>
+
+#include "muslin/contact/feature_lanes.hpp"
+#include "muslin/core/parallel.hpp"
+#include "muslin/core/vector_code.hpp"
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"  // how vectors are returned does not matter where all is inlined
+#endif
+
+namespace muslin {
+namespace {
+
+constexpr std::size_t grain = 4096;
+
+/// Eight vectors.
+struct Lanes3 {
+  Float8 x, y, z;
+};
+MUSLIN_INLINE Lanes3 minus(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+MUSLIN_INLINE Lanes3 times(const Float8& s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
+MUSLIN_INLINE Float8 dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+MUSLIN_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+MUSLIN_INLINE Float8 larger(const Float8& a, const Float8& b) { return a > b ? a : b; }
+MUSLIN_INLINE Float8 smaller(const Float8& a, const Float8& b) { return a < b ? a : b; }
+MUSLIN_INLINE Float8 magnitude(const Float8& a) { return larger(a, -a); }
+MUSLIN_INLINE Lanes3 select(const Int8& mask, const Lanes3& a, const Lanes3& b) {
+  return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+constexpr float tiny = 1e-30F;
+
+/// p − the nearest point of the segment a … a + u, w = p − a.
+MUSLIN_INLINE Lanes3 to_segment(const Lanes3& w, const Lanes3& u) {
+  const Float8 zero = {}, one = zero + 1;
+  const Float8 t = smaller(larger(dot(u, w) / larger(dot(u, u), zero + tiny), zero), one);
+  return minus(w, times(t, u));
+}
+
+MUSLIN_INLINE void keep_nearer(const Lanes3& d, Lanes3& best, Float8& square) {
+  const Float8 s = dot(d, d);
+  const Int8 nearer = s < square;
+  best = select(nearer, d, best);
+  square = nearer ? s : square;
+}
+
+/// Closest point of the triangle x[1], x[2], x[3] to x[0].
+MUSLIN_INLINE Lanes3 vertex_triangle(const Lanes3* x) {
+  const Float8 zero = {}, one = zero + 1;
+  const Lanes3 u = minus(x[2], x[1]), v = minus(x[3], x[1]), w = minus(x[0], x[1]);
+  const Lanes3 n = cross(u, v);
+  const Float8 area = larger(dot(n, n), zero + tiny);
+  const Float8 s = dot(cross(w, v), n) / area, t = dot(cross(u, w), n) / area;
+  Lanes3 best = to_segment(w, u);
+  Float8 square = dot(best, best);
+  keep_nearer(to_segment(w, v), best, square);
+  keep_nearer(to_segment(minus(x[0], x[2]), minus(x[3], x[2])), best, square);
+  return select((s >= zero) & (t >= zero) & (s + t <= one), times(dot(w, n) / area, n), best);
+}
+
+/// Closest points of the edges x[0] x[1] and x[2] x[3].
+MUSLIN_INLINE Lanes3 edge_edge(const Lanes3* x) {
+  const Float8 zero = {}, one = zero + 1;
+  const Lanes3 u = minus(x[1], x[0]), v = minus(x[3], x[2]), r = minus(x[0], x[2]);
+  const Lanes3 n = cross(u, v);
+  const Float8 area = larger(dot(n, n), zero + tiny);
+  const Float8 s = -dot(cross(r, v), n) / area, t = -dot(cross(r, u), n) / area;
+  Lanes3 best = to_segment(r, v);
+  Float8 square = dot(best, best);
+  keep_nearer(to_segment(minus(x[1], x[2]), v), best, square);
+  const Lanes3 back = to_segment(minus(x[2], x[0]), u), back1 = to_segment(minus(x[3], x[0]), u);
+  keep_nearer(minus(Lanes3{}, back), best, square);
+  keep_nearer(minus(Lanes3{}, back1), best, square);
+  const Int8 inside = (s >= zero) & (s <= one) & (t >= zero) & (t <= one) & (area > zero + tiny);
+  return select(inside, times(dot(r, n) / area, n), best);
+}
+
+}  // namespace
+
+void PairCulling::set_points(const ContactSurface& surface, ConstVectors at, ConstVectors lower,
+                             ConstVectors upper) {
+  Box all;
+  for (std::size_t p = 0; p < lower.size(); ++p) {
+    all.extend(lower[p]);
+    all.extend(upper[p]);
+  }
+  const Vec3 centre = all.isEmpty() ? Vec3(Vec3::Zero()) : all.center();
+  // Some ten roundings of coordinates of this size.
+  rounding_ = all.isEmpty() ? 0 : static_cast<float>(2e-6 * all.sizes().maxCoeff());
+  points_.resize(at.size());
+  parallel_for(at.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const Vec3 a = at[p] - centre, middle = (lower[p] + upper[p]) / 2 - centre,
+                 half = (upper[p] - lower[p]) / 2;
+      for (int k = 0; k < 3; ++k) {
+        points_[p].at[k] = static_cast<float>(a[k]);
+        points_[p].middle[k] = static_cast<float>(middle[k]);
+        points_[p].half[k] = static_cast<float>(half[k]);
+      }
+      points_[p].radius = static_cast<float>(surface.radius_of(static_cast<int>(p)));
+    }
+  });
+}
+
+namespace {
+
+/// One group of eight pairs: bits of those that may come near. `get(i, l)` is point i of pair l.
+template <PairKind kind, class Point>
+MUSLIN_INLINE LaneBits near_lanes(const Point* const (*corners)[lane_count], float reach, float rounding) {
+  Lanes3 at[4], middle[4], half[4];
+  Float8 radius[2];
+  for (int i = 0; i < 4; ++i) {
+    for (int l = 0; l < lane_count; ++l) {
+      const Point& p = *corners[i][l];
+      at[i].x[l] = p.at[0], at[i].y[l] = p.at[1], at[i].z[l] = p.at[2];
+      middle[i].x[l] = p.middle[0], middle[i].y[l] = p.middle[1], middle[i].z[l] = p.middle[2];
+      half[i].x[l] = p.half[0], half[i].y[l] = p.half[1], half[i].z[l] = p.half[2];
+      if (i == 0) radius[0][l] = p.radius;
+      if (i == 3) radius[1][l] = p.radius;
+    }
+  }
+  Lanes3 n;
+  if constexpr (kind == PairKind::vertex_triangle) {
+    n = vertex_triangle(at);
+  } else {
+    n = edge_edge(at);
+  }
+  const Lanes3 extent = {magnitude(n.x), magnitude(n.y), magnitude(n.z)};
+  constexpr int size_a = first_feature_size(kind);
+  Float8 a = dot(n, middle[0]) - dot(extent, half[0]), b = dot(n, middle[3]) + dot(extent, half[3]);
+  for (int i = 1; i < 3; ++i) {
+    if (i < size_a) {
+      a = smaller(a, dot(n, middle[i]) - dot(extent, half[i]));
+    } else {
+      b = larger(b, dot(n, middle[i]) + dot(extent, half[i]));
+    }
+  }
+  const Float8 zero = {}, gap = a - b, r = radius[0] + radius[1] + (reach + rounding);
+  return as_bits(~((gap > zero) & (gap * gap > r * r * dot(n, n))));
+}
+
+template <PairKind kind, class Point>
+MUSLIN_INLINE void mark_lanes(const Point* points, const std::array<int, 4>* pairs, std::size_t count,
+                              float reach, float rounding, std::uint8_t* keep) {
+  for (std::size_t first = 0; first < count; first += lane_count) {
+    const auto used = static_cast<int>(std::min<std::size_t>(lane_count, count - first));
+    const Point* corners[4][lane_count];
+    for (int l = 0; l < lane_count; ++l) {
+      const std::array<int, 4>& pair = pairs[first + static_cast<std::size_t>(std::min(l, used - 1))];
+      for (std::size_t i = 0; i < 4; ++i) corners[i][l] = points + pair[i];
+    }
+    const LaneBits bits = near_lanes<kind>(corners, reach, rounding);
+    for (int l = 0; l < used; ++l)
+      keep[first + static_cast<std::size_t>(l)] = static_cast<std::uint8_t>(bits >> (8 * l) & 1);
+  }
+}
+
+template <class Point>
+MUSLIN_VECTOR_CODE void mark_vertex_triangle(const Point* points, const std::array<int, 4>* pairs,
+                                             std::size_t count, float reach, float rounding,
+                                             std::uint8_t* keep) {
+  mark_lanes<PairKind::vertex_triangle>(points, pairs, count, reach, rounding, keep);
+}
+template <class Point>
+MUSLIN_VECTOR_CODE void mark_edge_edge(const Point* points, const std::array<int, 4>* pairs,
+                                       std::size_t count, float reach, float rounding, std::uint8_t* keep) {
+  mark_lanes<PairKind::edge_edge>(points, pairs, count, reach, rounding, keep);
+}
+
+}  // namespace
+
+void PairCulling::mark_near(PairKind kind, std::span<const std::array<int, 4>> pairs, double reach,
+                            std::uint8_t* keep) const {
+  const auto r = static_cast<float>(reach * (1 + 1e-6));
+  if (kind == PairKind::vertex_triangle) {
+    mark_vertex_triangle(points_.data(), pairs.data(), pairs.size(), r, rounding_, keep);
+  } else {
+    mark_edge_edge(points_.data(), pairs.data(), pairs.size(), r, rounding_, keep);
+  }
+}
+
+}  // namespace muslin
