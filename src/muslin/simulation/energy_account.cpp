@@ -88,7 +88,8 @@ EnergyFlow energy_flow(const SolvedStep& step) {
     }
   }
 
-  const bool euler = step.integrator != Integrator::bdf2;
+  const bool all_euler = step.integrator != Integrator::bdf2;
+  const std::vector<std::uint8_t>& turned = step.context->turned;
   const double tau = step.context->dt;
   struct Sums {
     double loss = 0, reaction = 0;
@@ -99,6 +100,8 @@ EnergyFlow energy_flow(const SolvedStep& step) {
     for (std::size_t v = begin; v < end; ++v) {
       const Vec3& v0 = before.velocities[v];
       const Vec3& v1 = after.velocities[v];
+      // A turning body's velocities are no differences of positions.
+      const bool euler = all_euler && (turned.empty() || turned[v] == 0);
       // The prediction of symplectic Euler is of use only to loads; its inertia is that of its velocities.
       const Vec3 acceleration =
           euler ? Vec3((v1 - v0) / step.length)

@@ -15,6 +15,7 @@
 #include "muslin/core/parallel.hpp"
 #include "muslin/simulation/checkpoint.hpp"
 #include "muslin/simulation/energy_account.hpp"
+#include "muslin/solver/rigid_prediction.hpp"
 
 namespace muslin {
 namespace {
@@ -206,11 +207,15 @@ void Simulation::Parts::advance_by(double length, int halvings) {
   SolverSettings settings = model->scene.solver;
   if (guard && model->contact->mode == ContactMode::fast) settings.effort = Effort::fast;
   const State before = state;
-  const StepContext context = step_context(settings.integrator, before, length);
+  StepContext context = step_context(settings.integrator, before, length);
   const auto loads = potentials_of_loads(context);
   Holds next = holds;
   next.step(model->pins, context.time_begin, context.time_end, before.positions, fixed, targets);
   for (const Prescribed& motion : model->prescribed) motion.hold(context.time_end, fixed, targets);
+  for (const Body& body : model->bodies) {
+    const auto first = static_cast<std::size_t>(body.first_vertex);
+    if (body.is_rigid() && fixed[first] == 0) predict_rigid(settings.integrator, before, first, context);
+  }
 
   StepProblem problem{masses, {}, fixed, targets, guard.get(), model->rest_positions};
   for (const PotentialTerm& term : model->potentials) problem.potentials.push_back(term.potential.get());
