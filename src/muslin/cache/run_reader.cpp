@@ -189,7 +189,11 @@ RunStatus RunReader::status() const {
 
 int RunReader::find_body(const std::string& name) const {
   const auto& names = parts_->names;
-  if (name.empty() && names.size() == 1) return 0;
+  const auto& bodies = parts_->bodies;
+  const auto is_soft = [](const BodyTracks& body) { return !body.collider; };
+  const auto soft = std::find_if(bodies.begin(), bodies.end(), is_soft);
+  if (name.empty() && std::count_if(bodies.begin(), bodies.end(), is_soft) == 1)
+    return static_cast<int>(soft - bodies.begin());
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<int>(found - names.begin());
   std::string known;

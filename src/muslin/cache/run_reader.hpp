@@ -40,7 +40,8 @@ class RunReader {
   int frame_count() const;
   int last_frame() const;  ///< that the run has or, unfinished, was to reach
   const std::vector<std::string>& bodies() const;
-  /// Index of a body by name; an empty name means the only body. Error(usage) naming the bodies there are.
+  /// Index of a body by name; an empty name means the only one that is no collider. Error(usage) naming the
+  /// bodies there are.
   int find_body(const std::string& name) const;
 
   /// In pictures, sRGB 0…1: as the scene says, else from a palette; colliders are grey.
