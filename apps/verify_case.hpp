@@ -36,6 +36,7 @@ std::vector<VerifyCase> motion_cases();
 std::vector<VerifyCase> elasticity_cases();
 std::vector<VerifyCase> bending_cases();
 std::vector<VerifyCase> shell_cases();
+std::vector<VerifyCase> resolution_cases();
 std::vector<VerifyCase> promise_cases();
 
 }  // namespace muslin::app

@@ -15,7 +15,7 @@ const std::vector<VerifyCase>& verify_cases() {
   static const std::vector<VerifyCase> all = [] {
     std::vector<VerifyCase> cases;
     for (const auto& part : {stepping_cases(), motion_cases(), elasticity_cases(), bending_cases(),
-                             shell_cases(), promise_cases()})
+                             shell_cases(), resolution_cases(), promise_cases()})
       cases.insert(cases.end(), part.begin(), part.end());
     return cases;
   }();
