@@ -14,8 +14,9 @@ bool Comparison::passed() const { return deviation() <= tolerance; }
 const std::vector<VerifyCase>& verify_cases() {
   static const std::vector<VerifyCase> all = [] {
     std::vector<VerifyCase> cases;
-    for (const auto& part : {stepping_cases(), motion_cases(), elasticity_cases(), bending_cases(),
-                             shell_cases(), resolution_cases(), promise_cases()})
+    for (const auto& part :
+         {stepping_cases(), motion_cases(), elasticity_cases(), bending_cases(), shell_cases(),
+          resolution_cases(), friction_cases(), promise_cases(), contact_cases()})
       cases.insert(cases.end(), part.begin(), part.end());
     return cases;
   }();

@@ -27,14 +27,6 @@ velocity = [0, 5, 1]
 gust = 2
 )";
 
-/// Number of vertices whose positions or velocities differ in any bit.
-double differing(const State& a, const State& b) {
-  double count = 0;
-  for (std::size_t v = 0; v < a.positions.size(); ++v)
-    count += a.positions[v] != b.positions[v] || a.velocities[v] != b.velocities[v];
-  return count;
-}
-
 std::vector<Comparison> threads() {
   const Experiment experiment;
   experiment.level_sheet("sheet.obj", 1.6, 1.6, 80);

@@ -38,16 +38,16 @@ void Experiment::box(const std::string& file, const Vec3& size) const {
   write(file, obj + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
 }
 
-void Experiment::level_sheet(const std::string& file, double x, double z, int cells) const {
+void Experiment::level_sheet(const std::string& file, double x, double z, int cells_x, int cells_z) const {
   std::string obj;
-  for (int b = 0; b <= cells; ++b) {
-    for (int a = 0; a <= cells; ++a)
-      obj += fmt::format("v {:.17g} 0 {:.17g}\n", x * a / cells, z * b / cells);
+  for (int k = 0; k <= cells_z; ++k) {
+    for (int i = 0; i <= cells_x; ++i)
+      obj += fmt::format("v {:.17g} 0 {:.17g}\n", x * i / cells_x, z * k / cells_z);
   }
-  const int row = cells + 1;
-  for (int b = 0; b < cells; ++b) {
-    for (int a = 0; a < cells; ++a) {
-      const int v = 1 + b * row + a;
+  const int row = cells_x + 1;
+  for (int k = 0; k < cells_z; ++k) {
+    for (int i = 0; i < cells_x; ++i) {
+      const int v = 1 + k * row + i;
       obj += fmt::format("f {} {} {} {}\n", v, v + row, v + row + 1, v + 1);
     }
   }
@@ -83,6 +83,13 @@ double largest_distance(ConstVectors x, ConstVectors y) {
   double largest = 0;
   for (std::size_t v = 0; v < x.size(); ++v) largest = std::max(largest, (x[v] - y[v]).norm());
   return largest;
+}
+
+double differing(const State& a, const State& b) {
+  double count = 0;
+  for (std::size_t v = 0; v < a.positions.size(); ++v)
+    count += a.positions[v] != b.positions[v] || a.velocities[v] != b.velocities[v];
+  return count;
 }
 
 std::string static_solve(double tolerance) {

@@ -22,7 +22,11 @@ class Experiment {
   /// Writes a closed box from the origin to `size` [m].
   void box(const std::string& file, const Vec3& size) const;
   /// Writes a flat sheet x by z in the plane y = 0, made of `cells` by `cells` squares [m].
-  void level_sheet(const std::string& file, double x, double z, int cells) const;
+  void level_sheet(const std::string& file, double x, double z, int cells) const {
+    level_sheet(file, x, z, cells, cells);
+  }
+  /// The same of `cells_x` by `cells_z` squares; vertex i + k (cells_x + 1).
+  void level_sheet(const std::string& file, double x, double z, int cells_x, int cells_z) const;
   /// Writes an upright sheet x by y in the plane z = 0 [m].
   void upright_sheet(const std::string& file, double x, double y) const;
 
@@ -43,6 +47,9 @@ Vec3 position(const Simulation& simulation, int i, int j, int k);
 
 /// Largest |x − y| over all vertices [m].
 double largest_distance(ConstVectors x, ConstVectors y);
+
+/// Number of vertices whose positions or velocities differ in any bit.
+double differing(const State& a, const State& b);
 
 /// The part of a scene that finds its static equilibrium: steps so long that inertia does not matter.
 /// `tolerance` [m/s²].

@@ -1,0 +1,286 @@
+// Friction: bodies on a slope, a strip around a pole, a strip pushed against the floor, a rolling ball.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "verify_case.hpp"
+#include "verify_experiment.hpp"
+#include <fmt/format.h>
+
+namespace muslin::app {
+namespace {
+
+constexpr double gravity = 9.8;
+
+/// A slope that rises towards −x, as a level floor under gravity that is turned.
+std::string slope(double degrees, double friction, int frame_rate) {
+  const double angle = degrees * std::numbers::pi / 180;
+  return fmt::format(R"(
+[time]
+frame_rate = {}
+steps_per_frame = 4
+duration = 1000
+[contact]
+friction = {}
+distance = 0.002
+mode = "converged"
+[solver]
+tolerance = 1e-4
+[[collider]]
+name = "slope"
+shape = "plane"
+[[force]]
+type = "gravity"
+acceleration = [{:.17g}, {:.17g}, 0]
+)",
+                     frame_rate, friction, gravity * std::sin(angle), -gravity * std::cos(angle));
+}
+
+const std::string block = R"(
+[[collider]]
+name = "body"
+shape = "box"
+size = [0.1, 0.06, 0.1]
+center = [0, 0.0315, 0]
+density = 1000
+)";
+
+const std::string lattice_block = R"(
+[[body]]
+name = "body"
+mesh = "block.obj"
+voxel_width = 0.05
+bracing = "full"
+translate = [0, 0.0015, 0]
+[body.material]
+density = 1000
+youngs_modulus = 1e6
+stiffness_damping = 0.002
+)";
+
+const std::string patch = R"(
+[[body]]
+name = "body"
+mesh = "patch.obj"
+model = "shell"
+material = "denim"
+translate = [0, 0.0015, 0]
+)";
+
+const Body& find_body(const Simulation& simulation, const std::string& name) {
+  const auto& bodies = simulation.model().bodies;
+  const auto at = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
+  if (at == bodies.end()) throw Error(ErrorKind::usage, "no body " + name, "mend the case");
+  return *at;
+}
+
+/// Of the vertices, by mass.
+Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity = false) {
+  const Body& body = find_body(simulation, name);
+  const auto& of = velocity ? simulation.state().velocities : simulation.state().positions;
+  Vec3 sum = Vec3::Zero();
+  double mass = 0;
+  for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    sum += simulation.model().masses[i] * of[i];
+    mass += simulation.model().masses[i];
+  }
+  return sum / mass;
+}
+
+Simulation start_on_slope(const Experiment& experiment, const std::string& body, double degrees,
+                          double friction, int frame_rate) {
+  experiment.box("block.obj", {0.1, 0.05, 0.1});
+  experiment.level_sheet("patch.obj", 0.2, 0.2, 10);
+  return experiment.start(slope(degrees, friction, frame_rate) + body);
+}
+
+constexpr double angle = 20;  // degrees; tan = 0.364
+
+std::vector<Comparison> holds_on_a_slope() {
+  std::vector<Comparison> numbers;
+  for (const auto& [name, body] : {std::pair{"a rigid block", block},
+                                   std::pair{"a soft block", lattice_block}, std::pair{"cloth", patch}}) {
+    const Experiment experiment;
+    Simulation simulation = start_on_slope(experiment, body, angle, 0.40, 10);
+    advance(simulation, 10);  // it settles
+    const Vec3 settled = centre(simulation, "body");
+    advance(simulation, 600);
+    numbers.push_back({fmt::format("creep of {} in 60 s [m], mu = 1.1 tan", name), 0,
+                       (centre(simulation, "body") - settled).norm(), 1e-6, false});
+  }
+  return numbers;
+}
+
+std::vector<Comparison> slides_down_a_slope() {
+  std::vector<Comparison> numbers;
+  const double radians = angle * std::numbers::pi / 180, friction = 0.2;
+  for (const auto& [name, body] : {std::pair{"a rigid block", block},
+                                   std::pair{"a soft block", lattice_block}, std::pair{"cloth", patch}}) {
+    const Experiment experiment;
+    Simulation simulation = start_on_slope(experiment, body, angle, friction, 60);
+    advance(simulation, 30);
+    const double before = centre(simulation, "body", true).x();
+    advance(simulation, 60);
+    const double expected = gravity * (std::sin(radians) - friction * std::cos(radians));
+    numbers.push_back({fmt::format("acceleration of {} [m/s2]", name), expected,
+                       centre(simulation, "body", true).x() - before, 0.02});
+  }
+  return numbers;
+}
+
+/// A strip hangs over a pole by equal loads; one grows until the strip slides.
+std::vector<Comparison> capstan() {
+  std::vector<Comparison> numbers;
+  for (const double friction : {0.15, 0.3}) {
+    const Experiment experiment;
+    constexpr int cells = 80;
+    experiment.level_sheet("strip.obj", 0.8, 0.02, cells, 2);
+    const double load = 1, seconds = 4, most = 1.15 * std::exp(friction * std::numbers::pi);
+    Simulation simulation = experiment.start(fmt::format(
+        R"(
+[time]
+frame_rate = 60
+steps_per_frame = 4
+duration = 10
+[contact]
+friction = {0}
+distance = 0.001
+mode = "converged"
+[[body]]
+name = "strip"
+mesh = "strip.obj"
+model = "shell"
+material = {{ areal_density = 0.2, membrane_warp = 10000, poisson = 0, bending_warp = 1e-5, mass_damping = 5, stiffness_damping = 0.002 }}
+translate = [-0.4, 0.1025, 0]
+[[collider]]
+name = "pole"
+shape = "capsule"
+points = [[0, 0, -0.1], [0, 0, 0.12]]
+radius = 0.1
+[[force]]
+type = "point"
+name = "still"
+where = {{ plane = {{ point = [-0.4, 0, 0], normal = [1, 0, 0] }} }}
+force = [0, {1:.17g}, 0]
+[[force]]
+type = "point"
+name = "growing"
+where = {{ plane = {{ point = [0.4, 0, 0], normal = [1, 0, 0] }} }}
+keyframes = [{{ time = 0, value = [0, {1:.17g}, 0] }}, {{ time = 2, value = [0, {1:.17g}, 0] }},
+  {{ time = {2:.17g}, value = [0, {3:.17g}, 0] }}]
+)",
+        friction, -load / 3, 2 + seconds, -load * most / 3));
+    advance(simulation, 120);
+    const Vec3 settled = simulation.state().positions[0];
+    double ratio = 0;
+    for (int frame = 0; frame < static_cast<int>(60 * seconds) && ratio == 0; ++frame) {
+      advance(simulation, 1);
+      if ((simulation.state().positions[0] - settled).norm() > 5e-3)
+        ratio = 1 + (most - 1) * (frame + 1) / (60 * seconds);
+    }
+    numbers.push_back({fmt::format("ratio of loads that slides, mu = {}", friction),
+                       std::exp(friction * std::numbers::pi), ratio, 0.05});
+  }
+  return numbers;
+}
+
+/// A strip clamped upright is pushed down on the floor; its end slides when too much of the force is
+/// sideways.
+std::vector<Comparison> stick_slip() {
+  std::vector<Comparison> numbers;
+  struct Case {
+    double push, friction;  // of the length, where T/N is the friction
+  };
+  constexpr int cells = 40;
+  constexpr double length = 1 - 0.5 / cells;  // a hinge bends half a square on either side of it
+  for (const Case& c :
+       {Case{0.06395714, 0.11846910}, Case{0.18414066, 0.22447259}, Case{0.34022174, 0.36662232}}) {
+    const Experiment experiment;
+    experiment.level_sheet("strip.obj", 1, 0.1, cells, 4);
+    const double most = 1.3 * c.push * length, seconds = 8;
+    Simulation simulation = experiment.start(fmt::format(
+        R"(
+[time]
+frame_rate = 60
+steps_per_frame = 2
+duration = 20
+[contact]
+friction = {0}
+distance = 0.001
+mode = "converged"
+[[body]]
+name = "strip"
+mesh = "strip.obj"
+model = "shell"
+thickness = 0
+material = {{ areal_density = 0.2, membrane_warp = 20000, poisson = 0, bending_warp = 0.1, mass_damping = 4, stiffness_damping = 0.001 }}
+rotate = [0, 0, -90]
+translate = [0, 1.0005, 0]
+[[collider]]
+name = "floor"
+shape = "plane"
+[[pin]]
+where = {{ box = [[-1, {1:.17g}, -1], [1, 2, 1]] }}
+keyframes = [{{ time = 0 }}, {{ time = {2:.17g}, translate = [0, {3:.17g}, 0] }}]
+[[force]]
+type = "gravity"
+acceleration = [0.02, 0, 0]
+)",
+        c.friction, 1.0005 - 1.5 / cells, seconds, -most));
+    const Vec3 before = simulation.state().positions[cells];
+    double slid = 0;
+    for (int frame = 0; frame < static_cast<int>(60 * seconds) && slid == 0; ++frame) {
+      advance(simulation, 1);
+      if (std::abs(simulation.state().positions[cells].x() - before.x()) > 5e-3)
+        slid = most * (frame + 1) / (60 * seconds);
+    }
+    numbers.push_back(
+        {fmt::format("push over length that slides, mu = {:.3f}", c.friction), c.push, slid / length, 0.05});
+  }
+  return numbers;
+}
+
+std::vector<Comparison> rolling_ball() {
+  std::vector<Comparison> numbers;
+  const double radians = angle * std::numbers::pi / 180, radius = 0.05;
+  for (const double friction : {0.3, 0.05}) {
+    const Experiment experiment;
+    Simulation simulation = experiment.start(slope(angle, friction, 60) + fmt::format(R"(
+[[collider]]
+name = "ball"
+shape = "sphere"
+center = [0, {}, 0]
+radius = {}
+density = 1000
+)",
+                                                                                      radius + 1e-3, radius));
+    advance(simulation, 30);
+    const double before = centre(simulation, "ball", true).x();
+    advance(simulation, 60);
+    const bool rolls = friction > std::tan(radians) * 2 / 7;
+    const double sine = gravity * std::sin(radians), cosine = gravity * std::cos(radians);
+    numbers.push_back({fmt::format("acceleration of a ball [m/s2], mu = {}", friction),
+                       rolls ? sine * 5 / 7 : sine - friction * cosine,
+                       centre(simulation, "ball", true).x() - before, 0.02});
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<VerifyCase> friction_cases() {
+  return {
+      {"slope-holds", "bodies on a slope stay where they are for mu > tan, for a minute", "Coulomb's law",
+       true, holds_on_a_slope},
+      {"slope-slides", "and slide with g (sin - mu cos) otherwise", "closed form", true, slides_down_a_slope},
+      {"capstan", "a strip around half a pole slides when its loads differ by exp(mu pi)", "Euler, Eytelwein",
+       true, capstan},
+      {"stick-slip",
+       "the end of a strip pushed on the floor slides when sideways force over normal force is mu",
+       "elastica, by shooting; after Romero et al. 2021", true, stick_slip},
+      {"rolling", "a ball rolls down a slope with 5/7 g sin, or slides", "closed form", true, rolling_ball},
+  };
+}
+
+}  // namespace muslin::app
