@@ -6,6 +6,7 @@
 #include "muslin/cache/run_reader.hpp"
 #include "muslin/cache/stages.hpp"
 #include "muslin/contact/crossings.hpp"
+#include "muslin/contact/intersections.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/progress.hpp"

@@ -258,6 +258,83 @@ TEST(Friction, HoldsBelowItsAngleAndSlidesAsCoulombSaysAbove) {
   EXPECT_NEAR(slide(0.1, slope)[1], expected, 0.01 * expected);
 }
 
+/// Two balls that turn, each carried by four vertices, on a floor and side by side.
+struct Balls {
+  static constexpr double radius = 0.1, range = 0.004;
+  std::shared_ptr<const ContactSurface> surface;
+  std::shared_ptr<const SurfaceMap> map;
+  std::vector<Vec3> q;
+
+  Balls() {
+    std::vector<int> offsets = {0};
+    std::vector<SurfaceMap::Entry> entries;
+    for (const Vec3& centre : {Vec3(0, radius + 0.001, 0), Vec3(2 * radius + 0.002, radius + 0.0015, 0.01)}) {
+      for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)}) {
+        entries.push_back({static_cast<int>(q.size()), 0.25});
+        q.push_back(centre + 0.06 * corner);
+      }
+      offsets.push_back(static_cast<int>(entries.size()));
+    }
+    entries.push_back({static_cast<int>(q.size()), 1});
+    offsets.push_back(static_cast<int>(entries.size()));
+    q.push_back(Vec3::Zero());
+    ContactBody first{radius, false, false}, second = first;
+    first.frame = {0, 1, 2, 3};
+    second.frame = {4, 5, 6, 7};
+    surface =
+        std::make_shared<ContactSurface>(std::vector<Vec3i>{{0, 0, 0}, {1, 1, 1}}, std::vector<int>{0, 1, 2},
+                                         std::vector<ContactBody>{first, second, {0, false, true}},
+                                         std::vector<ContactPlane>{{2, Vec3(0, 1, 0)}});
+    map = std::make_shared<SurfaceMap>(q.size(), offsets, entries);
+  }
+  ContactPotential potential(ConstVectors start, double stick = 2e-5) const {
+    std::vector<Vec3> x(surface->point_count());
+    map->apply(q, x);
+    ContactCandidates candidates(surface, x, range);
+    candidates.update(x, x, 0.002);
+    return ContactPotential(candidates, map, q, {0.5, stick}, start);
+  }
+  /// The first ball moved by `shift` and turned about its centre by `angle` about z.
+  std::vector<Vec3> moved(const Vec3& shift, double angle) const {
+    std::vector<Vec3> to = q;
+    const Vec3 centre = (q[0] + q[1] + q[2] + q[3]) / 4;
+    for (std::size_t i = 0; i < 4; ++i)
+      to[i] = centre + shift + Eigen::AngleAxisd(angle, Vec3::UnitZ()) * (q[i] - centre);
+    return to;
+  }
+};
+
+TEST(TurningBall, HasTheGradientOfItsValueAndAPositiveHessian) {
+  const Balls balls;
+  const ContactPotential w =
+      balls.potential(test::sum(balls.q, 1, test::random_vectors(balls.q.size(), 3e-5, 7)));
+  EXPECT_EQ(w.pair_count(), 4U);  // each on the floor; each centre and the other ball
+  const std::vector<Vec3> q = test::sum(balls.q, 1, test::random_vectors(balls.q.size(), 1e-5, 3));
+  const std::vector<Vec3> g = test::gradient(w, q);
+  for (std::uint32_t seed = 1; seed < 8; ++seed) {
+    const std::vector<Vec3> d = test::random_vectors(q.size(), 1, seed);
+    const double h = 1e-8;
+    const double slope = (w.value(test::sum(q, h, d)) - w.value(test::sum(q, -h, d))) / (2 * h);
+    EXPECT_NEAR(slope, test::inner(g, d), 2e-6 * test::norm(g) * test::norm(d));
+  }
+  test::expect_hessian_symmetric(w, q);
+  test::expect_diagonal_blocks_positive_semidefinite(w, q);
+}
+
+TEST(TurningBall, RubsWhereItsSurfaceMovesAndNotWhereItRolls) {
+  Balls balls;
+  for (std::size_t i = 4; i < 8; ++i) balls.q[i].x() += 1;  // out of the way
+  const double stick = 1e-6, angle = 1e-4, way = angle * Balls::radius;
+  const ContactPotential w = balls.potential(balls.q, stick);
+  // Turning by a positive angle about z the lowest point goes along +x.
+  const double spun = w.parts(balls.moved(Vec3::Zero(), angle)).rubbed,
+               slid = w.parts(balls.moved(Vec3(way, 0, 0), 0)).rubbed,
+               rolled = w.parts(balls.moved(Vec3(-way, 0, 0), angle)).rubbed;
+  EXPECT_GT(slid, 0);
+  EXPECT_NEAR(spun, slid, 0.02 * slid);  // the gap adds to the arm of 0.1 m
+  EXPECT_LT(rolled, 1e-3 * slid);
+}
+
 TEST(ContactPotential, RefusesNonsense) {
   const Scene scene;
   EXPECT_THROW(scene.potential(-1), Error);

@@ -111,6 +111,7 @@ class ContactBuilder {
         const int point = add_point(body, body.frame.centre);
         add_triangle(Vec3i::Constant(point), 0);
         contact.radius = settings.radius;
+        contact.frame = frame_of(body);
         break;
       }
       case Shape::capsule: {
@@ -119,6 +120,7 @@ class ContactBuilder {
                   b = add_point(body, start * settings.points[1]);
         add_triangle({a, b, b}, 0);
         contact.radius = settings.radius;
+        contact.frame = frame_of(body);
         break;
       }
       case Shape::box:
@@ -127,6 +129,12 @@ class ContactBuilder {
         return;
     }
     finish_body(body, contact);
+  }
+
+  /// The vertices that carry a round body, so that friction sees it turn.
+  static std::array<int, 4> frame_of(const Body& body) {
+    const int first = body.first_vertex;
+    return {first, first + 1, first + 2, first + 3};
   }
 
   /// How far a collider has moved from where its shape is given, at time 0.
