@@ -104,11 +104,12 @@ void take_steps(benchmark::State& state, const ProblemSettings& settings, const 
     Stepper stepper;
     State after;
     StepReport report;
-    const Least time = Least::of([&] {
-      after = problem.state;
-      const StepContext context = step_context(solver.integrator, after, problem.dt);
-      report = stepper.step(solver, context, problem.step_problem(), after);
-    });
+    const Least time = Least::of([&] { after = problem.state; },
+                                 [&] {
+                                   const StepContext context =
+                                       step_context(solver.integrator, after, problem.dt);
+                                   report = stepper.step(solver, context, problem.step_problem(), after);
+                                 });
     if (!report.converged) state.SkipWithError(report.failure.c_str());
     describe(state, reference, time);
     state.counters["newton"] = report.newton_iterations;

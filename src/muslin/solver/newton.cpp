@@ -18,6 +18,9 @@ constexpr double slope_share = 0.9;  // approximate Wolfe: the slope must have r
 constexpr double rounding = 1e-12;   // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-10;
 constexpr double loosest_forcing = 0.1;
+// A step that shrank the gradient to this share has hardly changed the Hessian, and another like it is enough
+// where no more than a third of that is asked for.
+constexpr double slightest_change = 0.03, ample = 3;
 
 struct Point {
   Vectors x;
@@ -93,13 +96,17 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
   inner.begin_step();
   StepReport report;
   double forcing = loosest_forcing;
+  double shrink = 1;       // of the gradient in the last step
+  bool as_before = false;  // whether H is that of the last step
   for (;;) {
     const IncrementalPotential::Imbalance imbalance = point.imbalance;
     report.residual = imbalance.largest;
     report.worst_vertex = imbalance.vertex;
     report.converged = imbalance.largest <= settings.tolerance;
     if (report.converged) break;
-    inner.linearize(function, point.x);
+    as_before =
+        !as_before && shrink <= slightest_change && ample * shrink * imbalance.largest <= settings.tolerance;
+    if (!as_before) inner.linearize(function, point.x);
     if (imbalance.largest <= function.rounding_floor(point.x, inner.stiffest())) {
       report.converged = true;
       break;
@@ -120,8 +127,10 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
       return slope < 0 && line_search(function, s, slope, point, g, room);
     };
     bool moved = move();
-    if (!moved && inner.project()) {  // a search that failed has overwritten g
-      function.gradient(point.x, g);
+    if (!moved && as_before) inner.linearize(function, point.x);
+    if (!moved && (as_before || inner.project())) {
+      function.gradient(point.x, g);  // which a search that failed has overwritten
+      as_before = false;
       moved = move();
     }
     if (!moved) {
@@ -129,7 +138,7 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
       break;
     }
     // Eisenstat and Walker's second choice with exponent 2: loose far from the solution, quadratic near it.
-    const double shrink = point.imbalance.norm / imbalance.norm;
+    shrink = point.imbalance.norm / imbalance.norm;
     forcing = std::clamp(0.9 * shrink * shrink, 1e-4, loosest_forcing);
   }
   if (point.x.data() != x.data()) std::copy(point.x.begin(), point.x.end(), x.begin());
