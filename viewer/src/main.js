@@ -6,43 +6,12 @@ import { colourings } from './cloth_material.js';
 import { css, mapColour } from './colours.js';
 import { makePlots } from './curves.js';
 import { makeControls } from './controls.js';
+import { framed } from './framing.js';
 import { digits, roundUp } from './numbers.js';
 import { openRun } from './run_data.js';
 import { Stage, presets } from './stage.js';
 
 const element = (id) => document.getElementById(id);
-
-/** Up to `most` of the points where skins are over the run, evenly chosen: x, y, z. */
-function placesOf(run, most) {
-  const tracks = run.head.bodies.map((body) => run.tracks[body.surfaces.skin.track]);
-  const frames = run.head.frames.length;
-  const points = tracks.reduce((sum, track) => sum + track.count, 0);
-  const frameStride = Math.ceil(frames / 60);
-  const pointStride = Math.ceil((points * Math.ceil(frames / frameStride)) / most);
-  const places = [];
-  for (const track of tracks) {
-    const positions = new Float32Array(3 * track.count);
-    for (let frame = 0; frame < frames; frame += frameStride) {
-      track.read({ frame, blend: 0 }, positions);
-      for (let p = 0; p < track.count; p += pointStride) places.push(...positions.subarray(3 * p, 3 * p + 3));
-    }
-  }
-  return places;
-}
-
-/** The box of everything that is drawn, over the whole run. */
-function boundsOf(run) {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  for (const body of run.head.bodies) {
-    const { low: from, size } = run.head.tracks[body.surfaces.skin.track];
-    for (let i = 0; i < 3; ++i) {
-      low[i] = Math.min(low[i], from[i]);
-      high[i] = Math.max(high[i], from[i] + size[i]);
-    }
-  }
-  return { low, size: high.map((x, i) => x - low[i]) };
-}
 
 /** Up is where gravity does not pull; y, if there is none. */
 function upAxis(run) {
@@ -62,8 +31,8 @@ class Viewer {
     this.run = run;
     const { head } = run;
     this.clock = new Clock(head.frames, head.frame_rate);
-    const bounds = boundsOf(run);
-    this.stage = new Stage(element('view'), placesOf(run, 30000));
+    const { places, bounds } = framed(run, 30000);
+    this.stage = new Stage(element('view'), places);
     this.bodies = head.bodies.map((body) => new Body(run, body));
     this.annotations = new Annotations(run, bounds, element('labels'));
     this.stage.beside = this.annotations.reach();

@@ -49,6 +49,7 @@ export class Stage {
     this.controls.dampingFactor = 0.12;
     this.controls.autoRotateSpeed = 1.5;
     this.controls.addEventListener('change', () => this.invalidate());
+    canvas.addEventListener('webglcontextrestored', () => this.invalidate());
     this.controls.addEventListener('start', () => {
       this.preset = null; // the eye is where the viewer put it
     });

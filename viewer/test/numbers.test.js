@@ -4,6 +4,7 @@ import { test } from 'node:test';
 import { keyed } from '../src/annotations.js';
 import { Clock, speeds } from '../src/clock.js';
 import { mapColour } from '../src/colours.js';
+import { framed } from '../src/framing.js';
 import { digits, roundUp, ticks, withUnit } from '../src/numbers.js';
 import { edgeStretch, smoothNormals } from '../src/surface_shape.js';
 
@@ -142,4 +143,28 @@ test('stretch is the largest of the edges of a point, never negative', () => {
   edgeStretch(positions, new Uint32Array([0, 1, 1, 2]), new Float32Array([1, 1]), out);
   assert.ok(Math.abs(out[0] - 20) < 1e-4 && Math.abs(out[1] - 20) < 1e-4);
   assert.equal(out[2], 0);
+});
+
+test('the camera looks at what moves, not at the ends of the floor', () => {
+  const track = (low, size, positions) => ({
+    count: positions[0].length / 3, low, step: size.map((x) => x / 65535),
+    words: Uint16Array.from(positions.flat()),
+    read({ frame }, out) {
+      const n = this.count;
+      for (let p = 0; p < n; ++p) for (let axis = 0; axis < 3; ++axis) {
+        out[3 * p + axis] = this.low[axis] + this.step[axis] * this.words[(3 * frame + axis) * n + p];
+      }
+    },
+  });
+  const cloth = track([0, 0, 0], [1, 1, 1], [[0, 65535, 0, 0, 0, 65535], [0, 65535, 0, 65535, 0, 65535]]);
+  const floor = track([-50, -1, -50], [101, 0, 101], [[0, 65535, 0, 0, 0, 65535], [0, 65535, 0, 0, 0, 65535]]);
+  const run = {
+    tracks: [cloth, floor],
+    head: { frames: [0, 1], bodies: [0, 1].map((k) => ({ surfaces: { skin: { track: k } } })) },
+  };
+  const { places, bounds } = framed(run, 1000);
+  assert.deepEqual(bounds.low, [0, 0, 0]);
+  assert.equal(places.length, 12); // two points at two frames, none of the floor
+  run.tracks = [floor, floor]; // nothing moves: all is looked at
+  assert.ok(framed(run, 1000).places.length > 0);
 });
