@@ -49,7 +49,6 @@ class Pin {
     this.object = new InstancedMesh(new SphereGeometry(radius, 16, 10),
       new MeshStandardMaterial({ color: 0xe0a82e, roughness: 0.35, metalness: 0.2 }), this.track.count);
     this.object.frustumCulled = false;
-    this.object.castShadow = true;
   }
 
   moveTo(place, time, wanted) {
