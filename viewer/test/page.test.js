@@ -56,7 +56,7 @@ before(async () => {
   run('run', scratch.at('scene.toml'), '-o', scratch.at('run'), '--quiet');
   run('view', scratch.at('run'), '-o', scratch.at('page.html'), '--quiet');
   browser = await launch();
-}, { timeout: 240000 });
+}, { timeout: 600000 });
 
 after(async () => {
   await browser?.close();

@@ -60,6 +60,7 @@ export function launch() {
  */
 export async function open(browser, file, { hash = 'play=0', ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, offline: true, ...options });
+  context.setDefaultTimeout(150000); // a busy machine without a graphics card takes its time
   const page = await context.newPage();
   page.complaints = [];
   page.on('console', (message) => page.complaints.push(`console: ${message.text()}`));
