@@ -25,6 +25,8 @@ def cloth_objects(scene):
 
 
 def collider_objects(scene):
+    if not scene.muslin.use_contact:
+        return []
     return [o for o in scene.objects if o.type == "MESH" and o.muslin.role == "COLLIDER"]
 
 
@@ -218,15 +220,15 @@ def scene_input(scene, names, snapshots, first, last):
     gravity = axes.turned(scene.gravity, scale) if scene.use_gravity else np.zeros(3)
     result = SceneInput(title=f"{scene.name} of {os.path.basename(bpy.data.filepath)}", frames=last - first,
                         frame_rate=rate, steps_per_frame=props.steps_per_frame, gravity=tuple(gravity),
-                        air_density=props.air_density, friction=props.friction)
+                        air_density=props.air_density, contact=props.use_contact, friction=props.friction)
     for obj in cloth_objects(scene):
         m, name = obj.muslin, names[obj.name]
-        cloth = Cloth(name=name, model=m.model.lower(), material=m.fabric, pinned=bool(snapshots[obj.name].pinned))
+        cloth = Cloth(name=name, model=m.model.lower(), material=m.fabric, thickness=m.thickness * scale,
+                      pinned=bool(snapshots[obj.name].pinned), self_contact=m.use_self_contact)
         if m.fabric.endswith(".toml"):
             cloth.material = bpy.path.abspath(m.fabric)
         if m.model == "LATTICE":
             cloth.voxel_width = (m.voxel_width or suggestion(obj, snapshots[obj.name])) * scale
-            cloth.thickness = m.thickness * scale
         elif m.rest_shape == "BASE":
             cloth.rest_mesh = name + ".rest.obj"
         if m.use_release and cloth.pinned:
@@ -396,8 +398,12 @@ class Capture:
             if (matrices == matrices[0]).all():
                 matrices = matrices[:1]
             objects.append({"object": name, "body": self.names[name], "matrices": matrices.tolist()})
+        files = [f"{body}.obj" for body in self.names.values()] + ["scene.toml"]
+        files += [c.rest_mesh for c in self.input.cloths if c.rest_mesh]
+        files += [part.pin for part in self.input.cloths if part.pin]
+        files += [part.sequence for part in self.input.colliders if part.sequence]
         return {"version": 1, "scene": self.scene_name, "frame_start": self.first, "frames": self.last - self.first,
-                "scale": self.scale, "objects": objects}
+                "scale": self.scale, "objects": objects, "files": files}
 
     def abandon(self):
         for name, writer in self.writers.items():

@@ -49,6 +49,9 @@ class PHYSICS_PT_muslin(MuslinPanel, Panel):
         width = context.region.width
         if obj.muslin.role == "COLLIDER":
             paragraph(layout, "Muslin cloth collides with this mesh, standing or animated.", width)
+            if not scene.muslin.use_contact:
+                paragraph(layout, "Contact is switched off in the settings of the scene.", width, "ERROR")
+                layout.prop(scene.muslin, "use_contact")
             return
         session = baking(scene)
         state = session.state if session else bs.State()
@@ -126,13 +129,16 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
         about = fabrics.description(m.fabric)
         if about:
             paragraph(layout, about, context.region.width, "INFO")
+        layout.prop(m, "thickness")
         if m.model == "LATTICE":
-            layout.prop(m, "thickness")
             row = layout.row(align=True)
             row.prop(m, "voxel_width")
             row.operator("muslin.suggest_width", text="", icon="LIGHT")
         else:
             layout.prop(m, "rest_shape")
+        column = layout.column()
+        column.enabled = context.scene.muslin.use_contact
+        column.prop(m, "use_self_contact")
         draw_counts(layout, context, m)
 
 
@@ -188,7 +194,10 @@ class PHYSICS_PT_muslin_scene(ClothPanel, Panel):
             column.prop(m, "frame_end")
         layout.prop(m, "steps_per_frame")
         layout.prop(m, "air_density")
-        layout.prop(m, "friction")
+        layout.prop(m, "use_contact")
+        column = layout.column()
+        column.enabled = m.use_contact
+        column.prop(m, "friction")
         layout.prop(m, "keep_states")
         gravity = scene.gravity.length * unit_scale(scene) if scene.use_gravity else 0
         layout.label(text=f"Gravity {gravity:.4g} m/s²" if gravity else "No gravity", icon="FORCE_FORCE")

@@ -172,14 +172,10 @@ def detach(scene):
 def remove_files(folder):
     """Takes away what a bake left in its folder, and nothing else."""
     folder = pathlib.Path(folder)
-    description = read_description(folder) or {"objects": []}
-    names = ["scene.toml", "worker.log", DESCRIPTION]
-    names += [f"{o['body']}.pc2" for o in description["objects"]]
+    description = read_description(folder) or {"objects": [], "files": []}
+    names = [*description["files"], *(f"{o['body']}.pc2" for o in description["objects"]), "worker.log", DESCRIPTION]
     for name in names:
         (folder / name).unlink(missing_ok=True)
-    for pattern in ("*.obj", "*.motion.pc2"):
-        for path in folder.glob(pattern):
-            path.unlink()
     for sub in ("check", "run"):
         remove_tree(folder / sub)
     for empty in (folder, folder.parent):

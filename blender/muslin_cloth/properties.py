@@ -28,7 +28,8 @@ class MuslinObject(bpy.types.PropertyGroup):
         search=suggest_fabrics, search_options={"SUGGESTION"})
     thickness: FloatProperty(
         name="Thickness", subtype="DISTANCE", min=0, soft_max=1, precision=4, update=drop_estimate,
-        description="Of a solid made from an open mesh; 0 takes one voxel width")
+        description="Of cloth, as contact sees it; of a solid made from an open mesh. 0 takes what muslin suggests: "
+                    "0.5 mm, or one voxel width")
     voxel_width: FloatProperty(
         name="Voxel Width", subtype="DISTANCE", min=0, soft_max=10, precision=4,
         description="Half of it shows twice the detail and takes about eight times as long; 0 takes a suggestion")
@@ -39,6 +40,8 @@ class MuslinObject(bpy.types.PropertyGroup):
                     "the object's own motion")
     use_release: BoolProperty(name="Release", description="The pins let go after a frame")
     release_frame: IntProperty(name="Release Frame", default=50)
+    use_self_contact: BoolProperty(
+        name="Self Contact", default=True, description="Touches itself; takes time where it does")
     rest_shape: EnumProperty(
         name="Rest Shape", description="The shape that is free of stress",
         items=[("START", "At the Start", "As it stands in the first frame"),
@@ -58,6 +61,8 @@ class MuslinScene(bpy.types.PropertyGroup):
         description="More steps follow fast motion better and damp less")
     air_density: FloatProperty(
         name="Air Density", default=1.2, min=0, soft_max=10, description="kg/m³; 0 is no air: neither wind nor drag")
+    use_contact: BoolProperty(
+        name="Contact", default=True, description="Cloth touches itself, other cloth and colliders; nothing crosses")
     friction: FloatProperty(name="Friction", default=0.3, min=0, soft_max=1, description="Of cloth on everything")
     keep_states: BoolProperty(
         name="Keep States", default=True,

@@ -14,12 +14,13 @@ class Cloth:
     name: str  # of the body: names files
     model: str  # "shell" | "lattice"
     material: str  # a name of the library or the path of a material file
-    thickness: float = 0.0  # [m]; 0: muslin's default
+    thickness: float = 0.0  # [m]; 0: muslin's default. Of a shell as contact sees it
     voxel_width: float = 0.0  # [m], of a lattice
     rest_mesh: str = ""  # file name
     pin: str = ""  # file name of the sequence; "": stands still
     pinned: bool = False
     release: Optional[float] = None  # when the pin lets go [s]
+    self_contact: bool = True
 
 
 @dataclass
@@ -47,8 +48,8 @@ class SceneInput:
     wind: Optional[Wind] = None
     cloths: List[Cloth] = field(default_factory=list)
     colliders: List[Collider] = field(default_factory=list)
+    contact: bool = True  # of cloth with itself, with other cloth and with colliders
     friction: float = 0.3
-    contact_distance: float = 0.0  # [m]; 0: muslin's default
 
 
 def body_names(names):
@@ -85,16 +86,20 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
               f"frame_rate = {number(scene.frame_rate)}", f"steps_per_frame = {scene.steps_per_frame}"]
     for cloth in scene.cloths:
         lines += ["", "[[body]]"] + _body(cloth)
+        if not scene.contact:
+            lines.append("contact = false")
+        elif not cloth.self_contact:
+            lines.append("self_contact = false")
     for cloth in scene.cloths:
         if cloth.pinned:
             lines += ["", "[[pin]]"] + _pin(cloth, moving)
-    for collider in scene.colliders:
+    for collider in scene.colliders if scene.contact else ():
         lines += ["", "[[collider]]", f"name = {quoted(collider.name)}", 'shape = "mesh"',
                   f"mesh = {quoted(collider.name + '.obj')}"]
         if collider.sequence and moving:
             lines.append(f"sequence = {quoted(collider.sequence)}")
-    if scene.colliders or len(scene.cloths) > 0:
-        lines += _contact(scene)
+    if scene.contact:
+        lines += ["", "[contact]", f"friction = {number(scene.friction)}"]
     if any(scene.gravity):
         lines += ["", "[[force]]", 'type = "gravity"', f"acceleration = {vector(scene.gravity)}"]
     if scene.air_density > 0:
@@ -107,9 +112,9 @@ def _body(cloth):
     lines.append(f"material = {quoted(cloth.material)}")
     if cloth.model == "lattice":
         lines.append(f"voxel_width = {number(cloth.voxel_width)}")
-        if cloth.thickness > 0:
-            lines.append(f"thickness = {number(cloth.thickness)}")
-    elif cloth.rest_mesh:
+    if cloth.thickness > 0:
+        lines.append(f"thickness = {number(cloth.thickness)}")
+    if cloth.rest_mesh:
         lines.append(f"rest_mesh = {quoted(cloth.rest_mesh)}")
     return lines
 
@@ -122,10 +127,6 @@ def _pin(cloth, moving):
     if cloth.release is not None:
         lines.append(f"until = {number(cloth.release)}")
     return lines
-
-
-def _contact(scene):
-    return []
 
 
 def _wind(scene):

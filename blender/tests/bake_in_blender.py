@@ -164,6 +164,61 @@ class Baking(HostTest):
         self.assertLess(points(obj, 6)[held][:, 2].max(), points(obj, 3)[held][:, 2].min() - 0.01)
 
 
+class Contact(HostTest):
+    """Cloth meets colliders, standing and animated, and itself."""
+
+    def sheet(self, height, n=12):
+        xs = np.linspace(-0.3, 0.3, n + 1)
+        at = lambda i, j: j * (n + 1) + i
+        faces = [(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)) for j in range(n) for i in range(n)]
+        return cloth(host.mesh_object("Sheet", [(x, y, height) for y in xs for x in xs], faces))
+
+    def box(self, size=0.5):
+        h = size / 2
+        corners = [(x, y, z) for x in (-h, h) for y in (-h, h) for z in (-h, h)]
+        faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        obj = host.mesh_object("Box", corners, faces)
+        bpy.ops.muslin.collider_add()
+        self.assertEqual(obj.muslin.role, "COLLIDER")
+        return obj
+
+    def test_a_sheet_lies_on_a_standing_box(self):
+        bpy.context.scene.frame_end = 14
+        box = self.box()
+        box.location.z = -0.25
+        obj = self.sheet(0.1)
+        bpy.context.scene.muslin.steps_per_frame = 8
+        bpy.ops.muslin.bake()
+        self.assert_plays(obj, "Sheet", 1, 14)
+        middle = points(obj, 14)[6 * 13 + 6]
+        self.assertGreater(middle[2], 0.0, "it lies on the box")
+        self.assertLess(middle[2], 0.02)
+        self.assertNotIn("sequence", (self.bake / "scene.toml").read_text())
+        bpy.context.scene.muslin.use_contact = False
+        bpy.ops.muslin.bake()
+        self.assertLess(points(obj, 14)[:, 2].max(), -0.5, "without contact it falls through")
+
+    def test_a_collider_that_moves_lifts_the_sheet(self):
+        bpy.context.scene.frame_end = 12
+        box = self.box()
+        for frame, z in ((1, -0.3), (12, 0.0)):
+            box.location.z = z
+            box.keyframe_insert("location", frame=frame)
+        obj = self.sheet(0.0)
+        bpy.context.scene.muslin.steps_per_frame = 8
+        bpy.ops.muslin.bake()
+        self.assertIn("sequence", (self.bake / "scene.toml").read_text())
+        self.assertGreater(points(obj, 12)[6 * 13 + 6][2], 0.25, "it is carried up")
+
+    def test_cloth_that_crosses_at_the_start_is_refused(self):
+        box = self.box()
+        box.location.z = 0.0
+        self.sheet(0.1)
+        with self.assertRaises(RuntimeError):
+            bpy.ops.muslin.bake()
+        print("crossing:", session().state.problem)
+
+
 class Lifecycle(HostTest):
     """What happens to a bake, and what is left of it."""
 
@@ -305,10 +360,10 @@ class Lifecycle(HostTest):
         obj = cloth(grid())
         start = points(obj, 5)
         bpy.ops.muslin.bake()
-        other = self.bake / "notes.txt"
+        other = self.bake / "notes.obj"
         other.write_text("not muslin's")
         bpy.ops.muslin.free()
-        self.assertEqual([p.name for p in self.bake.iterdir()], ["notes.txt"])
+        self.assertEqual([p.name for p in self.bake.iterdir()], ["notes.obj"])
         np.testing.assert_array_equal(points(obj, 5), start)
         other.unlink()
         bpy.ops.muslin.bake()

@@ -104,7 +104,7 @@ class SceneText(Scratch):
             wind=scene_text.Wind([(1, 0, 0), (2, 0, 0)], gust=0.5, gust_length=2, seed=7),
             cloths=[scene_text.Cloth("a b", "shell", "cotton", pinned=True, pin="a b.pc2", rest_mesh="a b.obj"),
                     scene_text.Cloth("solid", "lattice", "rubber", thickness=0.2, voxel_width=0.2, pinned=True,
-                                     release=0.25)])
+                                     release=0.25, self_contact=False)])
 
     def check(self, scene, moving=False):
         self.square("a b", uvs=[(0, 0), (1, 0), (1, 1), (0, 1)], pinned=[0, 1])
@@ -138,6 +138,16 @@ class SceneText(Scratch):
         self.assertEqual(told["force"][1]["gust"], 0.5)
         scene.wind = scene_text.Wind([(3, 0, 0)] * 5)
         self.assertEqual(tomllib.loads(scene_text.scene_toml(scene))["force"][1]["velocity"], [3, 0, 0])
+        self.assertEqual(told["contact"], {"friction": 0.3})
+        self.assertEqual([b.get("self_contact", True) for b in told["body"]], [True, False])
+        scene.colliders = [scene_text.Collider("ball"), scene_text.Collider("arm", "arm.pc2")]
+        colliders = tomllib.loads(scene_text.scene_toml(scene))["collider"]
+        self.assertEqual(colliders[0], {"name": "ball", "shape": "mesh", "mesh": "ball.obj"})
+        self.assertEqual(colliders[1]["sequence"], "arm.pc2")
+        scene.contact = False
+        told = tomllib.loads(scene_text.scene_toml(scene))
+        self.assertFalse({"collider", "contact"} & set(told))
+        self.assertEqual([b["contact"] for b in told["body"]], [False, False])
         scene.wind, scene.air_density, scene.gravity = None, 0, (0, 0, 0)
         self.assertNotIn("force", tomllib.loads(scene_text.scene_toml(scene)))
 
