@@ -216,7 +216,8 @@ class Session:
             playback.detach(scene)
         if self.folder and (not bpy.data.filepath or self.folder == playback.own_folder(scene)):
             playback.remove_files(self.folder)  # that of an earlier file stays with it
-        self.counts = {}
+        if not self.state.busy:
+            self.counts = {}
 
     def _show(self, frame):
         if self.playback is None:
