@@ -3,9 +3,10 @@
 #include <memory>
 
 #include "command.hpp"
-#include "picture.hpp"
 #include "progress_line.hpp"
 #include <fmt/format.h>
+
+#include "muslin/muslin.hpp"
 
 namespace muslin::app {
 namespace {

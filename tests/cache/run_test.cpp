@@ -9,6 +9,7 @@
 
 #include "muslin/cache/run_reader.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/input_file.hpp"
 
 namespace muslin {
 namespace {
@@ -49,6 +50,17 @@ TEST(Run, WritesTheThesisFlagAndReportsProgress) {
   const Diagnostics& first = run.diagnostics()[0];
   for (const Diagnostics& row : run.diagnostics())
     EXPECT_NEAR(row.balance(), first.balance(), 1.0) << row.frame;  // of some 10 kJ
+}
+
+TEST(Run, TakesASceneWithMeshesOfItsOwnToTheSameBytesAsFromFiles) {
+  Scratch scratch;
+  run_scene(scene, options(scratch / "file", 2));
+  Scene own = parse_scene(read_file(scene), scene);
+  own.meshes[own.bodies[0].mesh] = std::make_shared<const Mesh>(scene_mesh(own, own.bodies[0].mesh).mesh);
+  own.file = scratch / "nowhere" / "2_two_corners.toml";
+  run_scene(own, options(scratch / "own", 2));
+  for (const char* file : {"flag.skin.obj", "flag.skin.pc2", "flag.lattice.pc2", "scene.toml"})
+    EXPECT_EQ(bytes_of(scratch / "file" / file), bytes_of(scratch / "own" / file)) << file;
 }
 
 TEST(Run, CtrlCLeavesARunThatGoesOnToTheSameBytes) {

@@ -9,7 +9,6 @@
 #include "muslin/cache/run_writer.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/scene/model.hpp"
-#include "muslin/scene/scene.hpp"
 #include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
@@ -34,7 +33,10 @@ class Pace {
 }  // namespace
 
 RunResult run_scene(const std::filesystem::path& file, const RunOptions& options) {
-  const Scene scene = read_scene(file, options.overrides);
+  return run_scene(read_scene(file, options.overrides), options);
+}
+
+RunResult run_scene(const Scene& scene, const RunOptions& options) {
   const int total = options.frames >= 0 ? options.frames : scene.time.frames();
   RunProgress now;
   now.total = total;

@@ -4,6 +4,15 @@
 #include <cassert>
 
 namespace muslin {
+namespace {
+
+/// From where the pin took its vertices to where they belong at `time`.
+Eigen::Isometry3d motion_since(const Pin& pin, double time) {
+  if (pin.motion.keys.empty()) return Eigen::Isometry3d::Identity();
+  return pin.motion.at(time) * pin.motion.at(std::max(pin.from, 0.0)).inverse();
+}
+
+}  // namespace
 
 void Holds::step(std::span<const Pin> pins, double time_begin, double time_end, ConstVectors positions,
                  std::span<std::uint8_t> fixed, Vectors targets) {
@@ -36,9 +45,7 @@ void Holds::step(std::span<const Pin> pins, double time_begin, double time_end, 
       holding[p] = 1;
     }
     const bool moves = !pin.motion.keys.empty();
-    const Eigen::Isometry3d motion =
-        moves ? pin.motion.at(time_end) * pin.motion.at(std::max(pin.from, 0.0)).inverse()
-              : Eigen::Isometry3d::Identity();
+    const Eigen::Isometry3d motion = motion_since(pin, time_end);
     for (std::size_t i = 0; i < anchor.size(); ++i) {
       const auto v = static_cast<std::size_t>(pin.vertices[i]);
       fixed[v] = 1;
@@ -48,6 +55,20 @@ void Holds::step(std::span<const Pin> pins, double time_begin, double time_end, 
         targets[v] = moves ? Vec3(motion * anchor[i]) : anchor[i];
       }
     }
+  }
+}
+
+void Holds::take_anew(std::span<const Pin> pins, double time, ConstVectors positions) {
+  if (holding.size() != pins.size()) return;
+  std::size_t first = 0;
+  for (std::size_t p = 0; p < pins.size(); ++p) {
+    const Eigen::Isometry3d back = motion_since(pins[p], time).inverse();
+    for (std::size_t i = 0; i < pins[p].vertices.size(); ++i) {
+      const Vec3& now = positions[static_cast<std::size_t>(pins[p].vertices[i])];
+      // A pin that stands still keeps the very bits.
+      if (holding[p]) anchors[first + i] = pins[p].motion.keys.empty() ? now : Vec3(back * now);
+    }
+    first += pins[p].vertices.size();
   }
 }
 

@@ -28,6 +28,10 @@ struct Holds {
   /// as reached: a clock that adds up steps is not exact.
   void step(std::span<const Pin> pins, double time_begin, double time_end, ConstVectors positions,
             std::span<std::uint8_t> fixed, Vectors targets);
+
+  /// The vertices were put to `positions` by hand at `time`, the end of the last step: pins that are holding
+  /// hold them there, and move them on from there.
+  void take_anew(std::span<const Pin> pins, double time, ConstVectors positions);
 };
 
 }  // namespace muslin

@@ -7,7 +7,6 @@
 
 #include "muslin/field/signed_distance.hpp"
 #include "muslin/geometry/thicken.hpp"
-#include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/placement.hpp"
 #include "muslin/scene/solid.hpp"
 
@@ -34,7 +33,8 @@ auto at_place(const Place& place, const std::string& file, const Build& build) -
 class BodyBuilder {
  public:
   BodyBuilder(const Scene& scene, const BodySettings& settings, std::vector<std::string>& warnings)
-      : settings_(settings),
+      : scene_(scene),
+        settings_(settings),
         file_(resolve_path(scene, settings.mesh)),
         rest_file_(resolve_path(scene, settings.rest_mesh)),
         warnings_(warnings) {}
@@ -60,7 +60,7 @@ class BodyBuilder {
   }
 
   void read() {
-    MeshFile mesh_file = read_mesh(file_);
+    MeshFile mesh_file = scene_mesh(scene_, settings_.mesh);
     if (!mesh_file.note.empty()) say(mesh_file.note);
     body_.mesh = std::move(mesh_file.mesh);
     const auto place = placement(settings_.translate, settings_.rotate, settings_.scale);
@@ -75,7 +75,7 @@ class BodyBuilder {
   Mesh rest_mesh() {
     if (settings_.rest_mesh.empty()) return body_.mesh;
     return at_place(settings_.rest_mesh_place, rest_file_.string(), [&] {
-      Mesh rest = read_mesh(rest_file_).mesh;
+      Mesh rest = scene_mesh(scene_, settings_.rest_mesh).mesh;
       require_usable(rest, rest_file_.string());
       if (rest.vertex_count() != body_.mesh.vertex_count() || rest.face_offsets != body_.mesh.face_offsets ||
           rest.face_vertices != body_.mesh.face_vertices) {
@@ -217,6 +217,7 @@ class BodyBuilder {
     return part;
   }
 
+  const Scene& scene_;
   const BodySettings& settings_;
   std::filesystem::path file_, rest_file_;
   std::vector<std::string>& warnings_;

@@ -13,4 +13,9 @@ std::filesystem::path resolve_path(const Scene& scene, const std::string& path) 
   return scene.file.parent_path() / path;
 }
 
+MeshFile scene_mesh(const Scene& scene, const std::string& path) {
+  const auto own = scene.meshes.find(path);
+  return own != scene.meshes.end() ? MeshFile{*own->second, ""} : read_mesh(resolve_path(scene, path));
+}
+
 }  // namespace muslin

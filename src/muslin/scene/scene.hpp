@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +17,8 @@
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/force/keyed.hpp"
+#include "muslin/geometry/mesh.hpp"
+#include "muslin/io/mesh_file.hpp"
 #include "muslin/lattice/lattice.hpp"
 #include "muslin/lattice/springs.hpp"
 #include "muslin/material/material.hpp"
@@ -184,10 +188,16 @@ struct Scene {
   std::vector<PinSettings> pins;
   std::vector<ForceSettings> forces;
   std::vector<ProbeSettings> probes;
+  /// Meshes that are in no file, by the path under which the scene names them: for programs that make their
+  /// own. They go before files of that path.
+  std::map<std::string, std::shared_ptr<const Mesh>> meshes;
 };
 
 /// A path of the scene as written, made relative to the scene file's folder.
 std::filesystem::path resolve_path(const Scene& scene, const std::string& path);
+
+/// The mesh that the scene calls `path`: one of its own, or that file. Errors: as read_mesh.
+MeshFile scene_mesh(const Scene& scene, const std::string& path);
 
 /// Reads and checks a scene file; `overrides` are KEY=VALUE as given to --set, e.g. "time.duration=2",
 /// "body.flag.voxel_width=0.5", "body.0.voxel_width=0.5". Unknown keys are errors that name the nearest

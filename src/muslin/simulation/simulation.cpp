@@ -50,13 +50,7 @@ PinKey pin_key(const Pin& pin) {
   return {hash_bytes(&pin.from, sizeof pin.from, hash), pin.vertices.size()};
 }
 
-std::vector<std::uint64_t> term_keys(const Model& model) {
-  std::vector<std::uint64_t> keys;
-  for (const PotentialTerm& term : model.potentials)
-    keys.push_back(hash_bytes(term.name.data(), term.name.size()));
-  for (const LoadTerm& term : model.loads) keys.push_back(hash_bytes(term.name.data(), term.name.size()));
-  return keys;
-}
+bool is_stored(EnergyRole role) { return role == EnergyRole::elastic || role == EnergyRole::potential; }
 
 double max_stretch(const Body& body, ConstVectors x) {
   if (body.is_shell()) return max_stretch(body.shell, x);
@@ -91,6 +85,8 @@ double max_stretch(const Body& body, ConstVectors x) {
 
 struct Simulation::Parts {
   std::shared_ptr<const Model> model;
+  SimulationOptions options;
+  std::vector<LoadTerm> loads;  ///< those of the model, then those that were added
   State state;
   Stepper stepper;
   std::unique_ptr<ContactGuard> guard;  ///< null if nothing can touch
@@ -105,8 +101,6 @@ struct Simulation::Parts {
   std::vector<Vec3> targets;
   std::vector<double> masses;  ///< as the solver wants them: none is 0
 
-  SimulationOptions options;
-
   Parts(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options);
   const TimeSettings& time() const { return model->scene.time; }
   double time_of(int at_frame, int steps) const {
@@ -115,13 +109,23 @@ struct Simulation::Parts {
            (time().frame_rate * time().steps_per_frame);
   }
   void start_contact();
+  void touch();
+  void advance();
   void step();
   void advance_by(double length, int halvings);
   void account(const StepContext& context, double length, const State& before,
-               const std::vector<std::unique_ptr<Potential>>& loads);
+               const std::vector<std::unique_ptr<Potential>>& acting_loads);
   void restore_holds(const std::vector<PinKey>& pins, const Holds& saved);
   void restore_stored(const std::vector<std::uint64_t>& terms, const std::vector<double>& saved);
   std::vector<std::unique_ptr<Potential>> potentials_of_loads(const StepContext& context) const;
+  std::vector<std::uint64_t> term_keys() const;
+  EnergyRole role_of(std::size_t slot) const {
+    return slot < model->potentials.size() ? model->potentials[slot].role
+                                           : loads[slot - model->potentials.size()].role;
+  }
+  void store_energies();
+  void put(State changed);
+  void describe_state(Diagnostics& row) const;
   void finish_frame();
   [[noreturn]] void fail(const StepReport& report) const;
 };
@@ -130,6 +134,12 @@ struct Simulation::Parts {
 /// or a speed that nobody meant. Caches hold floats, which end at 3e38 m.
 constexpr double farthest = 1.5e11;  // [m]
 
+void require_count(ConstVectors vectors, std::size_t count, const char* what) {
+  if (vectors.size() == count) return;
+  throw Error(ErrorKind::usage, fmt::format("{} {} for {} vertices", vectors.size(), what, count),
+              "give one for each vertex of all bodies, in the order of the state");
+}
+
 int vertex_out_of_range(ConstVectors x) {
   for (std::size_t v = 0; v < x.size(); ++v)
     if (!(x[v].cwiseAbs().maxCoeff() <= farthest)) return static_cast<int>(v);
@@ -137,7 +147,7 @@ int vertex_out_of_range(ConstVectors x) {
 }
 
 Simulation::Parts::Parts(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options)
-    : model(std::move(the_model)), options(the_options) {
+    : model(std::move(the_model)), options(the_options), loads(model->loads) {
   const std::size_t count = model->vertex_count();
   state.positions = model->rest_positions;
   state.velocities = model->velocities;
@@ -150,15 +160,7 @@ Simulation::Parts::Parts(std::shared_ptr<const Model> the_model, const Simulatio
   targets.resize(count);
   if (model->contact) start_contact();
 
-  const StepContext context = step_context(model->scene.solver.integrator, state, time().step());
-  for (const PotentialTerm& term : model->potentials)
-    tally.stored.push_back(term.potential->value(state.positions));
-  const auto loads = potentials_of_loads(context);
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    const EnergyRole role = model->loads[i].role;
-    const bool stores = role == EnergyRole::elastic || role == EnergyRole::potential;
-    tally.stored.push_back(stores && loads[i] ? loads[i]->value(state.positions) : 0.0);
-  }
+  store_energies();
   finish_frame();
 }
 
@@ -167,20 +169,55 @@ void Simulation::Parts::start_contact() {
     throw Error(ErrorKind::usage, "symplectic_euler does not work with contact",
                 "use implicit_euler, bdf2 or linearly_implicit_euler");
   if (!options.allow_tangled) refuse_crossings(*model->contact, state.positions);
+  touch();
+  tally.smallest_gap = guard->memory().smallest_gap;
+}
+
+/// Contact without a past, at positions where nothing crosses.
+void Simulation::Parts::touch() {
   guard = std::make_unique<ContactGuard>(model->contact);
   if (options.allow_tangled) guard->leave_tangled(state.positions);
   guard->begin(state.positions, time().step(), fixed);
   guard->potential(state.positions);
   guard->end(state.positions);
   tally.pressed = guard->last_potential().parts(state.positions).pressed;
-  tally.smallest_gap = guard->memory().smallest_gap;
+}
+
+void Simulation::Parts::store_energies() {
+  const StepContext context = step_context(model->scene.solver.integrator, state, time().step());
+  tally.stored.clear();
+  for (const PotentialTerm& term : model->potentials)
+    tally.stored.push_back(is_stored(term.role) ? term.potential->value(state.positions) : 0.0);
+  for (const LoadTerm& term : loads) {
+    const auto acting = is_stored(term.role) ? term.load->potential(context) : nullptr;
+    tally.stored.push_back(acting ? acting->value(state.positions) : 0.0);
+  }
+}
+
+std::vector<std::uint64_t> Simulation::Parts::term_keys() const {
+  std::vector<std::uint64_t> keys;
+  for (const PotentialTerm& term : model->potentials)
+    keys.push_back(hash_bytes(term.name.data(), term.name.size()));
+  for (const LoadTerm& term : loads) keys.push_back(hash_bytes(term.name.data(), term.name.size()));
+  return keys;
 }
 
 std::vector<std::unique_ptr<Potential>> Simulation::Parts::potentials_of_loads(
     const StepContext& context) const {
   std::vector<std::unique_ptr<Potential>> potentials;
-  for (const LoadTerm& term : model->loads) potentials.push_back(term.load->potential(context));
+  for (const LoadTerm& term : loads) potentials.push_back(term.load->potential(context));
   return potentials;
+}
+
+void Simulation::Parts::advance() {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  step();
+  wall_ms += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  if (steps_done < time().steps_per_frame) return;
+  ++frame;
+  steps_done = 0;
+  finish_frame();
 }
 
 void Simulation::Parts::step() {
@@ -188,16 +225,22 @@ void Simulation::Parts::step() {
   const Holds start_holds = holds;
   const Tally start_tally = tally;
   const std::vector<PairSlip> start_slips = guard ? guard->memory().slips : std::vector<PairSlip>();
+  const auto go_back = [&] {
+    state = start;
+    holds = start_holds;
+    tally = start_tally;
+    if (guard) guard->restore_slips(start_slips);
+  };
   try {
     advance_by(time().step(), 0);
     const int lost = vertex_out_of_range(state.positions);
     if (lost >= 0) throw StepFailure{{.worst_vertex = lost, .failure = "it flew farther than 1.5e11 m"}};
   } catch (const StepFailure& failure) {
-    state = start;
-    holds = start_holds;
-    tally = start_tally;
-    if (guard) guard->restore_slips(start_slips);
+    go_back();
     fail(failure.report);
+  } catch (...) {
+    go_back();
+    throw;
   }
   ++steps_done;
   state.time = time_of(frame, steps_done);
@@ -208,7 +251,7 @@ void Simulation::Parts::advance_by(double length, int halvings) {
   if (guard && model->contact->mode == ContactMode::fast) settings.effort = Effort::fast;
   const State before = state;
   StepContext context = step_context(settings.integrator, before, length);
-  const auto loads = potentials_of_loads(context);
+  const auto acting_loads = potentials_of_loads(context);
   Holds next = holds;
   next.step(model->pins, context.time_begin, context.time_end, before.positions, fixed, targets);
   for (const Prescribed& motion : model->prescribed) motion.hold(context.time_end, fixed, targets);
@@ -219,7 +262,7 @@ void Simulation::Parts::advance_by(double length, int halvings) {
 
   StepProblem problem{masses, {}, fixed, targets, guard.get(), model->rest_positions};
   for (const PotentialTerm& term : model->potentials) problem.potentials.push_back(term.potential.get());
-  for (const auto& load : loads)
+  for (const auto& load : acting_loads)
     if (load) problem.potentials.push_back(load.get());
   const StepReport report = stepper.step(settings, context, problem, state);
   tally.newton += report.newton_iterations;
@@ -236,11 +279,11 @@ void Simulation::Parts::advance_by(double length, int halvings) {
   tally.held_back = report.held_back;
   if (guard) tally.smallest_gap = std::min(tally.smallest_gap, guard->memory().smallest_gap);
   holds = std::move(next);
-  account(context, length, before, loads);
+  account(context, length, before, acting_loads);
 }
 
 void Simulation::Parts::account(const StepContext& context, double length, const State& before,
-                                const std::vector<std::unique_ptr<Potential>>& loads) {
+                                const std::vector<std::unique_ptr<Potential>>& acting_loads) {
   std::vector<ActingPotential> acts;
   std::size_t slot = 0;
   // Fast steps do not obey their equation closely enough for a balance to be a check: what is stored is known
@@ -248,7 +291,7 @@ void Simulation::Parts::account(const StepContext& context, double length, const
   const bool by_values = guard && model->contact->mode == ContactMode::fast;
   for (const PotentialTerm& term : model->potentials) {
     ActingPotential act{term.role, term.potential.get()};
-    if (term.role == EnergyRole::elastic || term.role == EnergyRole::potential) {
+    if (is_stored(term.role)) {
       const double stored = term.potential->value(state.positions);
       if (by_values) act.gain = stored - tally.stored[slot];
       tally.stored[slot] = stored;
@@ -256,14 +299,14 @@ void Simulation::Parts::account(const StepContext& context, double length, const
     acts.push_back(act);
     ++slot;
   }
-  for (std::size_t i = 0; i < loads.size(); ++i, ++slot) {
-    const EnergyRole role = model->loads[i].role;
-    if (loads[i]) acts.push_back({role, loads[i].get()});
-    if (role != EnergyRole::elastic && role != EnergyRole::potential) continue;
+  for (std::size_t i = 0; i < acting_loads.size(); ++i, ++slot) {
+    const EnergyRole role = role_of(slot);
+    if (acting_loads[i]) acts.push_back({role, acting_loads[i].get()});
+    if (!is_stored(role)) continue;
     // A field that is switched or turned while a body is in it does work on the body.
-    const double begin = loads[i] ? loads[i]->value(before.positions) : 0.0;
+    const double begin = acting_loads[i] ? acting_loads[i]->value(before.positions) : 0.0;
     tally.work += begin - tally.stored[slot];
-    tally.stored[slot] = loads[i] ? loads[i]->value(state.positions) : 0.0;
+    tally.stored[slot] = acting_loads[i] ? acting_loads[i]->value(state.positions) : 0.0;
   }
   if (guard) {
     const ContactPotential& contact = guard->last_potential();
@@ -277,28 +320,30 @@ void Simulation::Parts::account(const StepContext& context, double length, const
   tally.dissipated += flow.dissipated;
 }
 
-void Simulation::Parts::finish_frame() {
-  Diagnostics row;
-  row.frame = frame;
-  row.time = state.time;
+void Simulation::Parts::describe_state(Diagnostics& row) const {
   row.kinetic = kinetic_energy(model->masses, state.velocities);
-  for (std::size_t i = 0; i < tally.stored.size(); ++i) {
-    const EnergyRole role = i < model->potentials.size() ? model->potentials[i].role
-                                                         : model->loads[i - model->potentials.size()].role;
-    if (role == EnergyRole::elastic) row.elastic += tally.stored[i];
-    if (role == EnergyRole::potential) row.potential += tally.stored[i];
+  row.elastic = row.potential = 0;
+  for (std::size_t slot = 0; slot < tally.stored.size(); ++slot) {
+    if (role_of(slot) == EnergyRole::elastic) row.elastic += tally.stored[slot];
+    if (role_of(slot) == EnergyRole::potential) row.potential += tally.stored[slot];
   }
   row.elastic += tally.pressed;
   row.work = tally.work;
   row.dissipated = tally.dissipated;
   row.momentum = total_momentum(model->masses, state.velocities);
+  row.max_stretch = model->bodies.empty() ? 1 : 0;
+  for (const Body& body : model->bodies)
+    row.max_stretch = std::max(row.max_stretch, max_stretch(body, model->of(body, state.positions)));
+}
+
+void Simulation::Parts::finish_frame() {
+  Diagnostics row;
+  row.frame = frame;
+  row.time = state.time;
+  describe_state(row);
   row.newton_iterations = static_cast<int>(tally.newton);
   row.linear_iterations = static_cast<int>(tally.linear);
   row.residual = tally.residual;
-  row.max_stretch = 0;
-  for (const Body& body : model->bodies)
-    row.max_stretch = std::max(row.max_stretch, max_stretch(body, model->of(body, state.positions)));
-  if (model->bodies.empty()) row.max_stretch = 1;
   row.min_distance = tally.smallest_gap;
   row.held_back = tally.held_back;
   row.wall_ms = wall_ms;
@@ -307,6 +352,29 @@ void Simulation::Parts::finish_frame() {
   tally.residual = 0;
   tally.smallest_gap = std::numeric_limits<double>::infinity();
   wall_ms = 0;
+}
+
+void Simulation::Parts::put(State changed) {
+  const auto energy = [&] {
+    double sum = kinetic_energy(model->masses, state.velocities) + tally.pressed;
+    for (const double stored : tally.stored) sum += stored;
+    return sum;
+  };
+  const double before = energy();
+  const bool moved = changed.positions != state.positions;
+  state = std::move(changed);
+  state.previous_positions.clear();
+  state.previous_velocities.clear();
+  state.previous_dt = 0;
+  if (moved) {
+    holds.take_anew(model->pins, state.time, state.positions);
+    if (guard) touch();
+  }
+  store_energies();
+  tally.work += energy() - before;
+  if (steps_done > 0) return;
+  describe_state(diagnostics);
+  if (guard && moved) diagnostics.min_distance = guard->memory().smallest_gap;
 }
 
 void Simulation::Parts::fail(const StepReport& report) const {
@@ -362,19 +430,48 @@ RunCosts Simulation::costs() const {
   return costs;
 }
 
+void Simulation::step() { parts_->advance(); }
+
 void Simulation::advance(const Progress& progress) {
   Parts& parts = *parts_;
-  const int steps = parts.time().steps_per_frame;
-  using Clock = std::chrono::steady_clock;
-  while (parts.steps_done < steps) {
-    progress.at(static_cast<double>(parts.steps_done) / steps, "simulation");
-    const auto begin = Clock::now();
-    parts.step();
-    parts.wall_ms += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  const int frame = parts.frame;
+  while (parts.frame == frame) {
+    progress.at(static_cast<double>(parts.steps_done) / parts.time().steps_per_frame, "simulation");
+    parts.advance();
   }
-  ++parts.frame;
-  parts.steps_done = 0;
-  parts.finish_frame();
+}
+
+void Simulation::add_load(LoadTerm load) {
+  parts_->loads.push_back(std::move(load));
+  parts_->tally.stored.push_back(0.0);
+}
+
+void Simulation::set_positions(ConstVectors positions) {
+  Parts& parts = *parts_;
+  require_count(positions, parts.state.positions.size(), "positions");
+  const int lost = vertex_out_of_range(positions);
+  if (lost >= 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the position of vertex {} is not finite or beyond {:.2g} m", lost, farthest),
+                "give finite positions in metres");
+  }
+  if (parts.guard) refuse_crossings(*parts.model->contact, positions);
+  State changed = parts.state;
+  changed.positions.assign(positions.begin(), positions.end());
+  parts.put(std::move(changed));
+}
+
+void Simulation::set_velocities(ConstVectors velocities) {
+  Parts& parts = *parts_;
+  require_count(velocities, parts.state.velocities.size(), "velocities");
+  for (std::size_t v = 0; v < velocities.size(); ++v) {
+    if (velocities[v].allFinite()) continue;
+    throw Error(ErrorKind::usage, fmt::format("the velocity of vertex {} is not finite", v),
+                "give finite velocities in metres per second");
+  }
+  State changed = parts.state;
+  changed.velocities.assign(velocities.begin(), velocities.end());
+  parts.put(std::move(changed));
 }
 
 std::vector<std::uint8_t> Simulation::checkpoint() const {
@@ -399,7 +496,7 @@ std::vector<std::uint8_t> Simulation::checkpoint() const {
   const Tally& tally = parts.tally;
   out.value(tally.work);
   out.value(tally.dissipated);
-  const std::vector<std::uint64_t> terms = term_keys(*parts.model);
+  const std::vector<std::uint64_t> terms = parts.term_keys();
   out.values(terms);
   out.values(tally.stored);
   out.value(tally.newton);
@@ -533,7 +630,7 @@ void Simulation::Parts::restore_holds(const std::vector<PinKey>& pins, const Hol
 
 void Simulation::Parts::restore_stored(const std::vector<std::uint64_t>& terms,
                                        const std::vector<double>& saved) {
-  const std::vector<std::uint64_t> keys = term_keys(*model);
+  const std::vector<std::uint64_t> keys = term_keys();
   std::vector<bool> used(saved.size(), false);
   tally.stored.assign(keys.size(), 0.0);
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -548,6 +645,7 @@ void Simulation::Parts::restore_stored(const std::vector<std::uint64_t>& terms,
   for (std::size_t j = 0; j < saved.size(); ++j)
     if (!used[j]) tally.work -= saved[j];
   for (std::size_t i = 0; i < model->potentials.size(); ++i) {
+    if (!is_stored(model->potentials[i].role)) continue;
     const double now = model->potentials[i].potential->value(state.positions);
     tally.work += now - tally.stored[i];
     tally.stored[i] = now;

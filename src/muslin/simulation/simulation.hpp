@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "muslin/core/progress.hpp"
+#include "muslin/core/vectors.hpp"
 #include "muslin/potential/state.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/solver/solver.hpp"
@@ -66,9 +67,23 @@ class Simulation {
 
   /// Advances to the end of the next frame. A step that fails is halved, up to 8 times; if that fails too,
   /// throws Error(solver) with frame, time, place and what to change, and the state is that of the last good
-  /// step. Polls progress.cancelled before each step; after Error(interrupted) the next call goes on from
-  /// the step reached.
+  /// step. Polls progress.cancelled before each step; after Error(interrupted), or whatever else a load or a
+  /// callback throws, the next call goes on from the last whole step.
   void advance(const Progress& progress = {});
+  /// One step of that, which finishes the frame if it is the frame's last.
+  void step();
+
+  /// Loads besides those of the model, in the energy balance by their role. They may depend on what changes
+  /// outside, so they are no part of checkpoints: add them again before restore().
+  void add_load(LoadTerm load);
+
+  /// Puts all vertices (#V by 3 [m]) somewhere else, as one would by hand: velocities stay, BDF2 starts anew,
+  /// pins that hold take hold where their vertices are now and move on from there, and the change of energy
+  /// counts as work. Contact forgets what stuck. Errors: usage, for another count or for numbers that are not
+  /// finite or beyond 1.5e11 m; input, if surfaces would cross.
+  void set_positions(ConstVectors positions);
+  /// The same for velocities (#V by 3 [m/s]). Errors: usage, for another count or numbers not finite.
+  void set_velocities(ConstVectors velocities);
 
   /// The complete state as bytes, and back: a run continued from it gives the same bits as one that never
   /// stopped. Only the bodies must be the same; pins, loads, duration and solver settings may have changed

@@ -5,9 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "muslin/muslin.hpp"
+#include "muslin/cache/run_reader.hpp"
+#include "muslin/core/progress.hpp"
+#include "muslin/render/camera.hpp"
+#include "muslin/render/image.hpp"
+#include "muslin/render/raytrace.hpp"
 
-namespace muslin::app {
+namespace muslin {
 
 struct PictureOptions {
   std::string body;  ///< empty: all
@@ -22,6 +26,7 @@ struct PictureOptions {
 /// Draws frames of one run, all from one place.
 class RunPictures {
  public:
+  /// Looks at all frames for where to stand. Errors: usage, for options out of range; file; interrupted.
   RunPictures(RunReader run, const PictureOptions& options, const Progress& progress);
   ~RunPictures();
   int frame_count() const;
@@ -39,4 +44,4 @@ Image draw_start(const Model& model, const std::vector<Crossing>& crossings);
 /// energy.svg, energy.png, stretch.svg, stretch.png in the run directory.
 void write_run_plots(const RunReader& run);
 
-}  // namespace muslin::app
+}  // namespace muslin

@@ -1,11 +1,15 @@
-#include "picture.hpp"
+#include "muslin/picture/run_pictures.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-namespace muslin::app {
+#include "muslin/geometry/thicken.hpp"
+#include "muslin/render/plot.hpp"
+#include "muslin/render/scene_view.hpp"
+
+namespace muslin {
 namespace {
 
 std::vector<Vec3> in_double(const std::vector<Vec3f>& points) {
@@ -181,4 +185,4 @@ void write_run_plots(const RunReader& run) {
   }
 }
 
-}  // namespace muslin::app
+}  // namespace muslin
