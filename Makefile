@@ -2,14 +2,17 @@
 BUILD := build/release
 JOBS ?= $(shell nproc)
 
-.PHONY: build demo test test-hosts blender-addon setup setup-tests clean pictures asan tsan fuzz tidy format
+.PHONY: build demo test test-hosts blender-addon setup setup-tests python-env clean pictures asan tsan fuzz tidy format
 .DEFAULT_GOAL := build
 
 setup:            ## installs the Debian packages muslin builds on, if any is missing
 	@tools/setup
 
-setup-tests:      ## and those that only the tests need: a browser, node
+setup-tests:      ## and those that only the tests need: a browser, node, Python
 	@tools/setup --tests
+
+python-env: setup-tests   ## build/python-env, a virtual environment with what the Python module is built and tested with
+	@tools/python_env build/python-env
 
 $(BUILD)/build.ninja: CMakeLists.txt CMakePresets.json | setup
 	cmake --preset release $(if $(CI),-DMUSLIN_WERROR=ON)
@@ -20,7 +23,8 @@ build: setup $(BUILD)/build.ninja   ## the program, at build/release/muslin
 demo: build       ## runs the two-corner flag; movie, poster and a page for the browser under out/
 	tools/demo $(BUILD)/muslin
 
-test: setup-tests $(BUILD)/build.ninja    ## every test
+test: python-env $(BUILD)/build.ninja    ## every test
+	cmake $(BUILD) -DMUSLIN_BUILD_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/build/python-env/bin/python
 	cmake --build $(BUILD) -j $(JOBS)
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
 

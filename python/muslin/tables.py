@@ -1,0 +1,102 @@
+"""Scenes from Python tables: the words of the scene file as dictionaries, lists, numbers and meshes."""
+
+import math
+import numbers
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from muslin._muslin import Mesh, Scene, parse_scene
+from muslin.errors import UsageError
+
+
+def make_scene(
+    tables: Mapping[str, Any] | None = None,
+    *,
+    folder: str | os.PathLike[str] = ".",
+    overrides: Iterable[str] = (),
+    **more: Any,
+) -> Scene:
+    """A scene from the tables of the scene file, checked as a file would be.
+
+    ``make_scene(title="flag", time={"duration": 2}, body=[{"mesh": mesh, ...}], force=[{"type": "gravity"}])``
+
+    A ``mesh`` or ``rest_mesh`` may be a ``muslin.Mesh`` in place of a path; paths are relative to ``folder``. numpy
+    arrays and numbers count as lists and numbers; ``None`` leaves a key out. The places in messages are those of
+    ``scene.text``.
+    """
+    meshes: dict[str, Mesh] = {}
+    content = _with_paths({**(tables or {}), **more}, meshes)
+    return parse_scene(to_toml(content), Path(folder) / "scene.toml", list(overrides), meshes=meshes)
+
+
+def to_toml(tables: Mapping[str, Any]) -> str:
+    """The text of a scene file with these tables."""
+    lines = [f"{_key(key)} = {_value(value, key)}" for key, value in tables.items() if _is_value(value)]
+    for key, value in tables.items():
+        if isinstance(value, Mapping):
+            lines += ["", f"[{_key(key)}]", *_entries(value, key)]
+        elif value is not None and not _is_value(value):
+            for table in value:
+                lines += ["", f"[[{_key(key)}]]", *_entries(table, key)]
+    return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _with_paths(value: Any, meshes: dict[str, Mesh]) -> Any:
+    """The same with each mesh replaced by a path, under which it is put into ``meshes``."""
+    if isinstance(value, Mesh):
+        path = f"{value.name or 'mesh'}.{len(meshes)}"
+        meshes[path] = value
+        return path
+    if isinstance(value, Mapping):
+        return {key: _with_paths(item, meshes) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_with_paths(item, meshes) for item in value]
+    return value
+
+
+def _is_value(value: Any) -> bool:
+    """Whether it goes behind ``key =`` rather than under a heading."""
+    if value is None or isinstance(value, Mapping):
+        return False
+    return not (isinstance(value, list | tuple) and value and all(isinstance(item, Mapping) for item in value))
+
+
+def _entries(table: Mapping[str, Any], title: str) -> list[str]:
+    return [f"{_key(key)} = {_value(value, f'{title}.{key}')}" for key, value in table.items() if value is not None]
+
+
+def _key(key: object) -> str:
+    if not isinstance(key, str):
+        raise UsageError(f"the key {key!r} is not a text", "use the words of the scene file")
+    return key if key and all(c.isascii() and (c.isalnum() or c in "_-") for c in key) else _text(key)
+
+
+def _text(text: str) -> str:
+    escapes = {'"': '\\"', "\\": "\\\\"}
+    return '"' + "".join(escapes.get(c, c if c.isprintable() else _escape(c)) for c in text) + '"'
+
+
+def _escape(c: str) -> str:
+    return f"\\u{ord(c):04x}" if ord(c) < 0x10000 else f"\\U{ord(c):08x}"
+
+
+def _value(value: Any, name: str) -> str:
+    if hasattr(value, "tolist"):  # numpy's arrays and numbers
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        number = float(value)
+        return repr(number) if math.isfinite(number) else str(number)
+    if isinstance(value, str | os.PathLike):
+        return _text(os.fspath(value))
+    if isinstance(value, Mapping):
+        items = [f"{_key(k)} = {_value(v, f'{name}.{k}')}" for k, v in value.items() if v is not None]
+        return "{ " + ", ".join(items) + " }" if items else "{}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_value(item, name) for item in value) + "]"
+    raise UsageError(f"`{name}` is a {type(value).__name__}", "use numbers, texts, lists, dictionaries or meshes")

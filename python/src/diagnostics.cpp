@@ -1,0 +1,69 @@
+#include "diagnostics.hpp"
+
+#include "arrays.hpp"
+#include <fmt/format.h>
+#include <nanobind/stl/string.h>
+
+namespace muslin::python {
+namespace {
+
+template <class Number>
+Array<Number, -1> column(const std::vector<Diagnostics>& rows, Number Diagnostics::*value) {
+  std::vector<Number> numbers;
+  numbers.reserve(rows.size());
+  for (const Diagnostics& row : rows) numbers.push_back(row.*value);
+  return taken(std::move(numbers));
+}
+
+}  // namespace
+
+Columns columns_of(const std::vector<Diagnostics>& rows) {
+  std::vector<Vec3> momenta;
+  for (const Diagnostics& row : rows) momenta.push_back(row.momentum);
+  Columns columns = nb::steal<Columns>(PyDict_New());
+  columns["frame"] = column(rows, &Diagnostics::frame);
+  columns["time"] = column(rows, &Diagnostics::time);
+  columns["kinetic"] = column(rows, &Diagnostics::kinetic);
+  columns["elastic"] = column(rows, &Diagnostics::elastic);
+  columns["potential"] = column(rows, &Diagnostics::potential);
+  columns["work"] = column(rows, &Diagnostics::work);
+  columns["dissipated"] = column(rows, &Diagnostics::dissipated);
+  columns["momentum"] = taken(std::move(momenta));
+  columns["newton_iterations"] = column(rows, &Diagnostics::newton_iterations);
+  columns["linear_iterations"] = column(rows, &Diagnostics::linear_iterations);
+  columns["residual"] = column(rows, &Diagnostics::residual);
+  columns["max_stretch"] = column(rows, &Diagnostics::max_stretch);
+  columns["min_distance"] = column(rows, &Diagnostics::min_distance);
+  columns["wall_ms"] = column(rows, &Diagnostics::wall_ms);
+  return columns;
+}
+
+void bind_diagnostics(nb::module_& m) {
+  nb::class_<Diagnostics>(m, "Diagnostics", "Numbers of a frame, over all bodies.")
+      .def_ro("frame", &Diagnostics::frame)
+      .def_ro("time", &Diagnostics::time, "[s]")
+      .def_ro("kinetic", &Diagnostics::kinetic, "[J]")
+      .def_ro("elastic", &Diagnostics::elastic, "Stored in the material [J].")
+      .def_ro("potential", &Diagnostics::potential, "Stored in fields such as gravity [J].")
+      .def_ro("work", &Diagnostics::work, "Done from outside since the start [J].")
+      .def_ro("dissipated", &Diagnostics::dissipated, "Lost since the start [J].")
+      .def_prop_ro("balance", &Diagnostics::balance,
+                   "kinetic + elastic + potential - work + dissipated [J]: stays what it was.")
+      .def_prop_ro(
+          "momentum", [](const Diagnostics& row) { return to_array(row.momentum); }, nb::rv_policy::automatic,
+          "(3,) [kg·m/s]")
+      .def_ro("newton_iterations", &Diagnostics::newton_iterations, "Of this frame.")
+      .def_ro("linear_iterations", &Diagnostics::linear_iterations, "Of this frame.")
+      .def_ro("residual", &Diagnostics::residual, "Largest of this frame [m/s²].")
+      .def_ro("max_stretch", &Diagnostics::max_stretch, "Largest length over rest length.")
+      .def_ro("min_distance", &Diagnostics::min_distance,
+              "Smallest gap in contact [m]; infinity without contact.")
+      .def_ro("wall_ms", &Diagnostics::wall_ms, "Time that this frame took.")
+      .def("__repr__", [](const Diagnostics& row) {
+        return fmt::format(
+            "<muslin.Diagnostics frame {}: kinetic {:.6g}, elastic {:.6g}, potential {:.6g} J>", row.frame,
+            row.kinetic, row.elastic, row.potential);
+      });
+}
+
+}  // namespace muslin::python

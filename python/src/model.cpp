@@ -1,0 +1,128 @@
+// The model: all that does not change during a run.
+#include <memory>
+#include <string>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "callbacks.hpp"
+#include "json.hpp"
+#include "simulation_object.hpp"
+#include <fmt/format.h>
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "muslin/muslin.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace muslin::python {
+namespace {
+
+/// Python objects for the parts of `self`, each keeping it alive.
+template <class Part>
+nb::typed<nb::list, Part> parts(const std::vector<Part>& parts, nb::handle self) {
+  nb::typed<nb::list, Part> list;
+  for (const Part& part : parts) list.append(nb::cast(&part, nb::rv_policy::reference_internal, self));
+  return list;
+}
+
+void bind_body(nb::module_& m) {
+  constexpr auto inside = nb::rv_policy::reference_internal;
+  nb::class_<Body>(m, "Body", "A body of a model. Its parts are views of the model.")
+      .def_ro("name", &Body::name)
+      .def_prop_ro(
+          "model", [](const Body& b) { return name_of(body_model_names(), b.model); },
+          "\"lattice\" or \"shell\".")
+      .def_prop_ro(
+          "mesh", [](const Body& b) -> const Mesh& { return b.mesh; }, inside,
+          "The user's mesh, placed in the world: the skin at rest.")
+      .def_prop_ro(
+          "solid", [](const Body& b) { return b.is_shell() ? nullptr : &b.solid; }, inside,
+          nb::sig("def solid(self) -> Mesh | None"), "The closed mesh that was filled with voxels.")
+      .def_prop_ro(
+          "report", [](const Body& b) -> const MeshReport& { return b.report; }, inside, "Of the mesh.")
+      .def_ro("sheet", &Body::sheet, "Thin: a shell, or a mesh that was given a thickness.")
+      .def_ro("thickness", &Body::thickness, "Of a sheet of voxels [m].")
+      .def_prop_ro(
+          "lattice", [](const Body& b) { return b.is_shell() ? nullptr : &b.lattice; }, inside,
+          nb::sig("def lattice(self) -> Lattice | None"))
+      .def_prop_ro(
+          "springs", [](const Body& b) { return b.is_shell() ? nullptr : &b.springs; }, inside,
+          nb::sig("def springs(self) -> Springs | None"))
+      .def_prop_ro(
+          "contour", [](const Body& b) { return b.is_shell() ? nullptr : &b.contour; }, inside,
+          nb::sig("def contour(self) -> Contour | None"))
+      .def_prop_ro(
+          "shell", [](const Body& b) { return b.is_shell() ? &b.shell : nullptr; }, inside,
+          nb::sig("def shell(self) -> Shell | None"))
+      .def_prop_ro(
+          "skin", [](const Body& b) -> const Embedding& { return b.skin; }, inside,
+          "From the body's vertices to those of its mesh.")
+      .def_ro("first_vertex", &Body::first_vertex, "In arrays of all bodies.")
+      .def_ro("vertex_count", &Body::vertex_count)
+      .def_prop_ro(
+          "vertices",
+          [](const Body& b) { return nb::slice(b.first_vertex, b.first_vertex + b.vertex_count, 1); },
+          "The slice of its vertices in arrays of all bodies.")
+      .def_prop_ro(
+          "mass", [](const Body& b) { return b.statistics.mass; }, "[kg]")
+      .def("__repr__", [](const Body& b) {
+        return fmt::format("<muslin.Body {}: {}, {} vertices>", b.name, name_of(body_model_names(), b.model),
+                           b.vertex_count);
+      });
+}
+
+}  // namespace
+
+void bind_model(nb::module_& m) {
+  bind_body(m);
+  using SelfPin = nb::pointer_and_handle<Pin>;
+  nb::class_<Pin>(m, "Pin", "Vertices that are held, and when.")
+      .def_ro("name", &Pin::name)
+      .def_prop_ro(
+          "vertices", [](SelfPin self) { return view(self.p->vertices, self.h); },
+          "(n,) in arrays of all bodies, ascending.")
+      .def_ro("begin", &Pin::from, "[s]")
+      .def_ro("end", &Pin::until, "[s]");
+
+  using Self = nb::pointer_and_handle<Model>;
+  nb::class_<Model>(m, "Model",
+                    "All that does not change during a run. Arrays are views of it, and read-only.")
+      .def_prop_ro(
+          "scene", [](const Model& model) -> const Scene& { return model.scene; },
+          nb::rv_policy::reference_internal)
+      .def_prop_ro("bodies", [](Self self) { return parts(self.p->bodies, self.h); })
+      .def(
+          "body",
+          [](const Model& model, const std::string& name) -> const Body& { return find_body(model, name); },
+          "name"_a, nb::rv_policy::reference_internal, "The body of this name.")
+      .def_prop_ro("pins", [](Self self) { return parts(self.p->pins, self.h); })
+      .def_prop_ro(
+          "rest_positions", [](Self self) { return view(self.p->rest_positions, self.h); },
+          "(V, 3) of all bodies, one after the other [m].")
+      .def_prop_ro(
+          "masses", [](Self self) { return view(self.p->masses, self.h); }, "(V,) [kg]")
+      .def_prop_ro("vertex_count", &Model::vertex_count)
+      .def_ro("warnings", &Model::warnings, "What the user should know before a run.")
+      .def(
+          "describe", [](const Model& model) { return from_json(describe_json(model)); },
+          "What `muslin check --json` prints, as Python objects.")
+      .def("__str__", [](const Model& model) { return describe_text(model); })
+      .def("__repr__", [](const Model& model) {
+        return fmt::format("<muslin.Model \"{}\": {} bodies, {} vertices>", model.scene.title,
+                           model.bodies.size(), model.vertex_count());
+      });
+  m.def(
+      "build_model",
+      [](const Scene& scene, const Report& progress, const Cancel& cancel) {
+        const nb::gil_scoped_release nogil;
+        return std::make_shared<const Model>(build_model(scene, progress_of(progress, cancel)));
+      },
+      "scene"_a, nb::kw_only(), "progress"_a = nb::none(), "cancel"_a = nb::none(),
+      "Reads the meshes and builds everything.");
+}
+
+}  // namespace muslin::python

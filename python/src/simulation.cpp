@@ -1,0 +1,183 @@
+// Simulations: stepped, looked at, changed, saved.
+#include <memory>
+#include <optional>
+
+#include "bindings.hpp"
+#include "callbacks.hpp"
+#include "diagnostics.hpp"
+#include "errors.hpp"
+#include "simulation_object.hpp"
+#include <fmt/format.h>
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace muslin::python {
+namespace {
+
+using Self = SimulationObject;
+using Force = nb::typed<nb::callable, nb::object(Array<double, -1, 3>, Array<double, -1, 3>, double)>;
+using PointsByName = nb::typed<nb::dict, nb::str, Array<double, 3>>;
+
+int traverse(PyObject* self, visitproc visit, void* arg) {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  for (const nb::object& force : nb::inst_ptr<Self>(self)->forces()) Py_VISIT(force.ptr());
+  return 0;
+}
+
+int clear(PyObject* self) {
+  if (nb::inst_ready(self)) nb::inst_ptr<Self>(self)->forget_forces();
+  return 0;
+}
+
+PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse)},
+                       {Py_tp_clear, reinterpret_cast<void*>(clear)},
+                       {0, nullptr}};
+
+Array<double, -1, 3> carried(const Self& self, const std::optional<std::string>& name,
+                             const std::string& surface, const std::vector<Vec3>& vectors) {
+  const Body& body = find_body(*self.model(), name);
+  const bool contour = choice(surface, {"skin", "contour"}, "surface") == 1;
+  if (contour && body.is_shell())
+    throw Error(ErrorKind::usage, "the body \"" + body.name + "\" is a shell, which has no contour",
+                "take its skin");
+  const Embedding& embedding = contour ? body.contour.embedding : body.skin;
+  std::vector<Vec3> points(embedding.size());
+  embedding.apply(self.model()->of(body, vectors), points);
+  return taken(std::move(points));
+}
+
+PointsByName at_probes(const Self& self, const std::vector<Vec3>& vectors) {
+  PointsByName points;
+  for (const Probe& probe : self.model()->probes) {
+    Vec3 point;
+    probe.point.apply(self.model()->of(self.model()->bodies[static_cast<std::size_t>(probe.body)], vectors),
+                      {&point, 1});
+    points[probe.name.c_str()] = to_array(point);
+  }
+  return points;
+}
+
+nb::bytes checkpoint(const Self& self) {
+  const std::vector<std::uint8_t> bytes = self.simulation().checkpoint();
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+int next_frame(Self& self) {
+  if (self.simulation().frame() >= self.model()->scene.time.frames()) throw nb::stop_iteration();
+  self.advance(progress_of(std::nullopt, std::nullopt));
+  return self.simulation().frame();
+}
+
+}  // namespace
+
+void bind_simulation(nb::module_& m) {
+  bind_diagnostics(m);
+  nb::class_<Self>(
+      m, "Simulation", nb::type_slots(slots),
+      "A model and its state, advanced frame by frame:\n\n"
+      "    for frame in simulation:\n"
+      "        print(frame, simulation.positions.mean(axis=0))\n\n"
+      "runs to the scene's last frame. The GIL is released while stepping; one thread at a time may use\n"
+      "a simulation.")
+      .def(nb::init<std::shared_ptr<const Model>>(), "model"_a)
+      .def(
+          "__init__",
+          [](Self* self, const Scene& scene) {
+            new (self) Self(std::make_shared<const Model>(build_model(scene, progress_of({}, {}))));
+          },
+          "scene"_a)
+      .def_prop_ro("model", [](const Self& self) { return self.model(); })
+      .def_prop_ro(
+          "frame", [](const Self& self) { return self.simulation().frame(); }, "The last finished frame.")
+      .def_prop_ro(
+          "steps_done", [](const Self& self) { return self.simulation().steps_done(); },
+          "Steps of the frame in work; 0 between frames.")
+      .def_prop_ro(
+          "time", [](const Self& self) { return self.simulation().state().time; }, "[s]")
+      .def_prop_ro(
+          "diagnostics", [](const Self& self) { return self.simulation().diagnostics(); },
+          "Of the last finished frame.")
+      .def(
+          "history", [](const Self& self) { return self.simulation(), columns_of(self.history()); },
+          "Diagnostics of all frames so far, or since restore(): an array per column.")
+      .def_prop_rw(
+          "positions", [](Self& self) { return self.positions(); },
+          [](Self& self, const ArrayLike& positions) { self.set_positions(positions); },
+          nb::for_getter(nb::sig("def positions(self) -> numpy.typing.NDArray[numpy.float64]")),
+          nb::for_setter(nb::sig("def positions(self, positions: numpy.typing.ArrayLike, /) -> None")),
+          "(V, 3) of all bodies, one after the other [m]. Reading gives a read-only array of this moment,\n"
+          "which later steps do not change. Setting moves the vertices as by hand: pins that hold take hold\n"
+          "where their vertices are put, and the change of energy counts as work.")
+      .def_prop_rw(
+          "velocities", [](Self& self) { return self.velocities(); },
+          [](Self& self, const ArrayLike& velocities) { self.set_velocities(velocities); },
+          nb::for_getter(nb::sig("def velocities(self) -> numpy.typing.NDArray[numpy.float64]")),
+          nb::for_setter(nb::sig("def velocities(self, velocities: numpy.typing.ArrayLike, /) -> None")),
+          "(V, 3) [m/s], read and set as positions are.")
+      .def(
+          "advance",
+          [](Self& self, const Report& progress, const Cancel& cancel) {
+            self.advance(progress_of(progress, cancel));
+          },
+          nb::kw_only(), "progress"_a = nb::none(), "cancel"_a = nb::none(),
+          "To the end of the next frame. progress(fraction, stage) and cancel() are called before each step; "
+          "after\n"
+          "Interrupted, KeyboardInterrupt, or an exception of a callback the next call goes on from the last "
+          "whole\n"
+          "step.")
+      .def("step", &Self::step, "One step of the solver; the last of a frame finishes it.")
+      .def(
+          "add_force",
+          [](Self& self, const Force& force, const std::string& name,
+             const std::optional<std::string>& body) { self.add_force(nb::object(force), name, body); },
+          "force"_a, nb::kw_only(), "name"_a = "force", "body"_a = nb::none(),
+          "force(x, v, t) returns the force on each vertex, (V, 3) [N], or None for nothing: x and v, (V, 3) "
+          "[m] and\n"
+          "[m/s], and t [s] are those at the beginning of each step, and the force stays what it was during "
+          "it. So\n"
+          "it is explicit: a force that is stiff against the step is unstable, a drag -c v needs steps below "
+          "2 m/c.\n"
+          "With `body` it sees and acts on the vertices of that body only. Forces are no part of "
+          "checkpoints: add\n"
+          "them again before restore().")
+      .def(
+          "points",
+          [](const Self& self, const std::optional<std::string>& body, const std::string& surface) {
+            return carried(self, body, surface, self.simulation().state().positions);
+          },
+          "body"_a = nb::none(), nb::kw_only(), "surface"_a = "skin",
+          "Where the vertices of a body's mesh (\"skin\") or \"contour\" are now, (n, 3) [m].")
+      .def(
+          "probes", [](const Self& self) { return at_probes(self, self.simulation().state().positions); },
+          "Where each probe is, (3,) [m].")
+      .def(
+          "probe_velocities",
+          [](const Self& self) { return at_probes(self, self.simulation().state().velocities); },
+          "How fast each probe moves, (3,) [m/s].")
+      .def("checkpoint", &checkpoint, "The complete state: going on from it gives the same bits.")
+      .def(
+          "restore",
+          [](Self& self, const nb::bytes& bytes) {
+            const auto* data = static_cast<const std::uint8_t*>(bytes.data());
+            self.restore({data, data + bytes.size()});
+          },
+          "checkpoint"_a,
+          "Goes back to a checkpoint of the same bodies; pins, loads, times and solver settings may have "
+          "changed.")
+      .def(
+          "__iter__", [](nb::typed<nb::handle, Self> self) { return nb::borrow(self); },
+          nb::sig("def __iter__(self) -> Simulation"))
+      .def("__next__", &next_frame, "Advances, and returns the frame.")
+      .def("__repr__", [](const Self& self) {
+        return fmt::format("<muslin.Simulation \"{}\" at frame {} of {}>", self.model()->scene.title,
+                           self.simulation().frame(), self.model()->scene.time.frames());
+      });
+}
+
+}  // namespace muslin::python
