@@ -33,6 +33,7 @@ from muslin._muslin import (
     SignedDistance,
     Simulation,
     Springs,
+    ViewReport,
     build_contour,
     build_lattice,
     build_model,
@@ -58,6 +59,7 @@ from muslin._muslin import (
     write_mesh,
     write_run_plots,
     write_stages,
+    write_view,
 )
 from muslin.errors import Error, FileError, InputError, Interrupted, SolverError, UsageError
 from muslin.tables import make_scene, to_toml
@@ -92,6 +94,7 @@ __all__ = [
     "SolverError",
     "Springs",
     "UsageError",
+    "ViewReport",
     "__version__",
     "build_contour",
     "build_lattice",
@@ -120,4 +123,5 @@ __all__ = [
     "write_mesh",
     "write_run_plots",
     "write_stages",
+    "write_view",
 ]

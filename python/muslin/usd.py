@@ -113,9 +113,7 @@ def _write_body(
     prim.CreateFaceVertexIndicesAttr(pxr.Vt.IntArray.FromNumpy(np.array(mesh.face_vertices)))
     _write_uvs(pxr, prim, mesh)
     _write_groups(pxr, prim, mesh)
-    colour = _colour(run, body)
-    if colour is not None:
-        prim.CreateDisplayColorAttr([tuple(colour)])
+    prim.CreateDisplayColorAttr([tuple(float(c) for c in run.colour(body))])
     points, velocities = prim.CreatePointsAttr(), prim.CreateVelocitiesAttr()
     extent = prim.CreateExtentAttr()
     for frame in range(run.frame_count):
@@ -150,10 +148,3 @@ def _write_groups(pxr: Any, prim: Any, mesh: Mesh) -> None:
             pxr.Vt.IntArray.FromNumpy(np.array(faces)),
             "groups",
         )
-
-
-def _colour(run: Run, body: str) -> list[float] | None:
-    for settings in run.scene.get("body", []):
-        if settings.get("name") == body and settings.get("colour") is not None:
-            return [float(c) for c in settings["colour"]]
-    return None

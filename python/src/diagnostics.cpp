@@ -58,6 +58,8 @@ void bind_diagnostics(nb::module_& m) {
       .def_ro("max_stretch", &Diagnostics::max_stretch, "Largest length over rest length.")
       .def_ro("min_distance", &Diagnostics::min_distance,
               "Smallest gap in contact [m]; infinity without contact.")
+      .def_ro("held_back", &Diagnostics::held_back,
+              "Vertices moved along keyframes that something in their way holds back.")
       .def_ro("wall_ms", &Diagnostics::wall_ms, "Time that this frame took.")
       .def("__repr__", [](const Diagnostics& row) {
         return fmt::format(

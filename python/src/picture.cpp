@@ -1,4 +1,5 @@
 // Pictures, movies and plots of runs.
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "muslin/muslin.hpp"
 
@@ -123,6 +125,23 @@ void bind_picture(nb::module_& m) {
           "path"_a, nb::kw_only(), "frame"_a = nb::none(), "progress"_a = nb::none(), "cancel"_a = nb::none(),
           "A .mp4 of all frames (by the program ffmpeg), a .png of one, else the last, or a folder of "
           "frames.");
+  nb::class_<ViewReport>(m, "ViewReport", "What a page came to.")
+      .def_ro("bytes", &ViewReport::bytes, "Of the page.")
+      .def_ro("frames", &ViewReport::frames, "Shown.")
+      .def_ro("notes", &ViewReport::notes, "What was left out.");
+  m.def(
+      "write_view",
+      [](const RunReader& run, const FilePath& file, double max_size, const Report& progress,
+         const Cancel& cancel) {
+        if (!(max_size > 0)) throw Error(ErrorKind::usage, "max_size is not above 0", "give megabytes");
+        ViewOptions options;
+        options.largest_bytes = static_cast<std::uint64_t>(1e6 * std::min(max_size, 1e6));
+        const nb::gil_scoped_release nogil;
+        return write_view(run, file, options, progress_of(progress, cancel));
+      },
+      "run"_a, "file"_a, nb::kw_only(), "max_size"_a = 16.0, "progress"_a = nb::none(),
+      "cancel"_a = nb::none(),
+      "One HTML page that plays a run in a browser. max_size: of the page [MB]; a larger run is thinned.");
   m.def(
       "write_run_plots", [](const RunReader& run) { write_run_plots(run); }, "run"_a,
       nb::call_guard<nb::gil_scoped_release>(),

@@ -254,6 +254,13 @@ void bind_run(nb::module_& m) {
                    "Complete frames when it was opened, with frame 0.")
       .def_prop_ro(
           "bodies", [](const RunReader& run) { return run.bodies(); }, "Their names.")
+      .def_prop_ro("last_frame", &RunReader::last_frame, "That the run has or, unfinished, was to reach.")
+      .def(
+          "colour",
+          [](const RunReader& run, const Name& body) {
+            return to_array(run.colour(Bodies(run, body).index()));
+          },
+          "body"_a = nb::none(), "Of a body in pictures: red, green, blue from 0 to 1 (sRGB), shape (3,).")
       .def(
           "is_shell",
           [](const RunReader& run, const Name& body) { return run.is_shell(Bodies(run, body).index()); },

@@ -75,6 +75,8 @@ def test_reads_all_there_is(finished):
     run = muslin.Run(finished)
     assert (run.title, run.status, run.frame_rate, run.frame_count, run.bodies) == ("flag", "finished", 24, 9, ["flag"])
     assert run.directory == finished
+    assert run.last_frame == 8
+    assert run.colour().shape == (3,) and (run.colour("flag") <= 1).all()
     assert run.scene["time"]["duration"] == 2
     assert not run.is_shell()
     assert run.mesh().face_count == 60
@@ -212,6 +214,16 @@ def test_pictures_and_plots(finished, tmp_path):
         muslin.RunPictures(tmp_path / "none")
     muslin.write_run_plots(muslin.Run(finished))
     assert (finished / "energy.svg").read_text().startswith("<")
+
+
+def test_a_page_for_browsers(finished, tmp_path):
+    report = muslin.write_view(muslin.Run(finished), tmp_path / "flag.html")
+    assert report.frames == 9 and report.notes == []
+    assert report.bytes == (tmp_path / "flag.html").stat().st_size
+    assert (tmp_path / "flag.html").read_text().lower().startswith("<!doctype html>")
+    for size in (0, -1, float("nan")):
+        with pytest.raises(muslin.UsageError):
+            muslin.write_view(muslin.Run(finished), tmp_path / "flag.html", max_size=size)
 
 
 def test_a_shell_has_neither_contour_nor_lattice(tmp_path):

@@ -82,6 +82,37 @@ TEST(ContactRun, GoesOnFromACheckpointBitForBit) {
   }
 }
 
+TEST(ContactRun, PositionsPutByHandAreCheckedAndTouchNothingOld) {
+  const auto model = drop(12, ContactMode::converged);
+  Simulation simulation(model);
+  for (int frame = 0; frame < 12; ++frame) simulation.advance();
+  ASSERT_LT(simulation.diagnostics().min_distance, model->contact->distance);
+  const double balance = simulation.diagnostics().balance();
+  const auto shifted = [&](double y) {
+    std::vector<Vec3> x = simulation.state().positions;
+    for (std::size_t v = 0; v < 12 * 12; ++v) x[v].y() += y;
+    return x;
+  };
+  const std::vector<std::uint8_t> before = simulation.checkpoint();
+  try {
+    simulation.set_positions(shifted(-0.1));  // into the ball
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+  }
+  EXPECT_EQ(simulation.checkpoint(), before);
+  simulation.set_positions(shifted(1));
+  EXPECT_TRUE(std::isinf(simulation.diagnostics().min_distance));
+  EXPECT_NEAR(simulation.diagnostics().balance(), balance, 1e-9);
+  for (int frame = 0; frame < 3; ++frame) simulation.advance();
+  EXPECT_NEAR(simulation.diagnostics().balance(), balance, 1e-4);
+  Simulation resumed(model);
+  resumed.restore(simulation.checkpoint());
+  resumed.advance();
+  simulation.advance();
+  EXPECT_EQ(resumed.checkpoint(), simulation.checkpoint());
+}
+
 TEST(ContactRun, GivesTheSameBitsOnAnyNumberOfThreads) {
   const auto model = drop(20, ContactMode::fast);
   std::vector<std::vector<Vec3>> ends;
