@@ -27,12 +27,13 @@ def make_scene(
     ``scene.text``.
     """
     meshes: dict[str, Mesh] = {}
-    content = _with_paths({**(tables or {}), **more}, meshes)
+    content = _with_paths({**_tables(tables), **more}, meshes)
     return parse_scene(to_toml(content), Path(folder) / "scene.toml", list(overrides), meshes=meshes)
 
 
 def to_toml(tables: Mapping[str, Any]) -> str:
     """The text of a scene file with these tables."""
+    tables = _tables(tables)
     lines = [f"{_key(key)} = {_value(value, key)}" for key, value in tables.items() if _is_value(value)]
     for key, value in tables.items():
         if isinstance(value, Mapping):
@@ -41,6 +42,14 @@ def to_toml(tables: Mapping[str, Any]) -> str:
             for table in value:
                 lines += ["", f"[[{_key(key)}]]", *_entries(table, key)]
     return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _tables(tables: object) -> Mapping[str, Any]:
+    if tables is None:
+        return {}
+    if not isinstance(tables, Mapping):
+        raise UsageError(f"the tables are a {type(tables).__name__}", "give a dictionary, as in {'title': 'flag'}")
+    return tables
 
 
 def _with_paths(value: Any, meshes: dict[str, Mesh]) -> Any:

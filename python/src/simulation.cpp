@@ -63,6 +63,16 @@ PointsByName at_probes(const Self& self, const std::vector<Vec3>& vectors) {
   return points;
 }
 
+nb::typed<nb::dict, nb::str, nb::float_> costs_of(const RunCosts& costs) {
+  nb::typed<nb::dict, nb::str, nb::float_> seconds;
+  seconds["search"] = costs.search;
+  seconds["limit"] = costs.limit;
+  seconds["contact"] = costs.contact;
+  seconds["linearize"] = costs.linearize;
+  seconds["solve"] = costs.solve;
+  return seconds;
+}
+
 nb::bytes checkpoint(const Self& self) {
   const std::vector<std::uint8_t> bytes = self.simulation().checkpoint();
   return nb::bytes(bytes.data(), bytes.size());
@@ -85,13 +95,21 @@ void bind_simulation(nb::module_& m) {
       "        print(frame, simulation.positions.mean(axis=0))\n\n"
       "runs to the scene's last frame. The GIL is released while stepping; one thread at a time may use\n"
       "a simulation.")
-      .def(nb::init<std::shared_ptr<const Model>>(), "model"_a)
       .def(
           "__init__",
-          [](Self* self, const Scene& scene) {
-            new (self) Self(std::make_shared<const Model>(build_model(scene, progress_of({}, {}))));
+          [](Self* self, std::shared_ptr<const Model> model) {
+            const nb::gil_scoped_release nogil;
+            new (self) Self(std::move(model));
           },
-          "scene"_a)
+          "model"_a)
+      .def(
+          "__init__",
+          [](Self* self, const Scene& scene, const Report& progress, const Cancel& cancel) {
+            const nb::gil_scoped_release nogil;
+            new (self) Self(std::make_shared<const Model>(build_model(scene, progress_of(progress, cancel))));
+          },
+          "scene"_a, nb::kw_only(), "progress"_a = nb::none(), "cancel"_a = nb::none(),
+          "Builds the scene's model first.")
       .def_prop_ro("model", [](const Self& self) { return self.model(); })
       .def_prop_ro(
           "frame", [](const Self& self) { return self.simulation().frame(); }, "The last finished frame.")
@@ -160,6 +178,12 @@ void bind_simulation(nb::module_& m) {
           "probe_velocities",
           [](const Self& self) { return at_probes(self, self.simulation().state().velocities); },
           "How fast each probe moves, (3,) [m/s].")
+      .def(
+          "costs", [](const Self& self) { return costs_of(self.simulation().costs()); },
+          "Where the time of contact went since the simulation was made: seconds of \"search\", \"limit\", "
+          "\"contact\", "
+          "\"linearize\" and\n"
+          "\"solve\".")
       .def("checkpoint", &checkpoint, "The complete state: going on from it gives the same bits.")
       .def(
           "restore",

@@ -185,6 +185,14 @@ def test_history_and_balance(flag):
     assert "frame 48" in repr(last)
 
 
+def test_costs_without_contact(flag):
+    simulation = flag()
+    simulation.advance()
+    costs = simulation.costs()
+    assert set(costs) == {"search", "limit", "contact", "linearize", "solve"}
+    assert costs["search"] == costs["limit"] == costs["contact"] == 0
+
+
 def test_solver_errors_leave_the_last_good_step(flag):
     simulation = flag(solver={"integrator": "symplectic_euler"}, time={"duration": 2, "steps_per_frame": 1, "frame_rate": 1e-3})
     before = simulation.checkpoint()
