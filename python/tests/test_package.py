@@ -31,14 +31,15 @@ def sdist(source, tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("sdist")
     name = run(sys.executable, "-c", FROM_HERE.format(kind="sdist", settings=""), folder, cwd=source).split()[-1]
     with tarfile.open(folder / name) as archive:
-        archive.extractall(folder, filter="data")
+        archive.extractall(folder)
     return folder / name.removesuffix(".tar.gz")
 
 
 def test_sdist_has_the_sources_and_no_more(source, sdist):
     assert sdist.name == f"muslin-{muslin.__version__}"
     packed = {path.relative_to(sdist).as_posix() for path in sdist.rglob("*") if path.is_file()}
-    tracked = run("git", "ls-files", "CMakeLists.txt", "LICENSE", "README.md", "pyproject.toml", "cmake", "src", "materials", "python", cwd=source)
+    parts = ("CMakeLists.txt", "LICENSE", "README.md", "pyproject.toml", "cmake", "src", "materials", "viewer/dist", "python")
+    tracked = run("git", "ls-files", *parts, cwd=source)
     assert packed - {"PKG-INFO"} == {name for name in tracked.split("\n") if name}
 
 
