@@ -54,13 +54,23 @@ class Keeper {
   std::exception_ptr kept_;
 };
 
+/// −1: the last.
+int first_frame(std::optional<int> resume_from) {
+  if (resume_from && *resume_from < 0)
+    throw Error(ErrorKind::usage, "resume_from is below 0", "give the frame to go on from");
+  return resume_from.value_or(-1);
+}
+
 RunResult run(const Scene& scene, const FilePath& directory, std::optional<int> frames, bool resume,
-              const RunReport& progress, const Cancel& cancel) {
+              std::optional<int> resume_from, bool keep_states, const RunReport& progress,
+              const Cancel& cancel) {
   if (frames && *frames < 0) throw Error(ErrorKind::usage, "frames is below 0", "give the last frame");
   RunOptions options;
   options.directory = directory;
   options.frames = frames.value_or(-1);
-  options.resume = resume;
+  options.resume = resume || resume_from;
+  options.resume_from = first_frame(resume_from);
+  options.keep_states = keep_states;
   Keeper keeper;
   if (progress) {
     options.report = [&](const RunProgress& now) {
@@ -95,13 +105,14 @@ RunStatus status_called(const std::string& name) {
 class RunWriterObject {
  public:
   RunWriterObject(const FilePath& directory, SimulationObject& simulation, std::optional<int> frames,
-                  bool resume)
+                  bool resume, std::optional<int> resume_from, bool keep_states)
       : simulation_(simulation), frames_(frames.value_or(simulation.model()->scene.time.frames())) {
     if (frames_ < 0) throw Error(ErrorKind::usage, "frames is below 0", "give the last frame");
     {
       SimulationObject::Work work(simulation);
       const nb::gil_scoped_release nogil;
-      writer_ = std::make_unique<RunWriter>(directory, work.simulation(), frames_, resume);
+      writer_ = std::make_unique<RunWriter>(directory, work.simulation(), frames_, resume || resume_from,
+                                            RunHistory{keep_states, first_frame(resume_from)});
     }
     if (writer_->resumed()) simulation.restored();
   }
@@ -190,8 +201,9 @@ void bind_writer(nb::module_& m) {
       "The run is finished if it reached its last frame, interrupted or failed if the block\n"
       "was left earlier; then `resume=True` goes on from its last checkpoint.")
       .def(
-          nb::init<const FilePath&, SimulationObject&, std::optional<int>, bool>(), "directory"_a,
-          "simulation"_a, nb::kw_only(), "frames"_a = nb::none(), "resume"_a = false, nb::keep_alive<1, 3>(),
+          nb::init<const FilePath&, SimulationObject&, std::optional<int>, bool, std::optional<int>, bool>(),
+          "directory"_a, "simulation"_a, nb::kw_only(), "frames"_a = nb::none(), "resume"_a = false,
+          "resume_from"_a = nb::none(), "keep_states"_a = false, nb::keep_alive<1, 3>(),
           "Begins a run at frame 0, in place of an earlier one in `directory`; with `resume` it restores "
           "the\n"
           "simulation from the newest checkpoint, if there is one. frames: the last frame, else the scene's.")
@@ -229,11 +241,15 @@ void bind_run(nb::module_& m) {
       .def_ro("changes", &RunResult::changes, "Settings changed since the run that was resumed.")
       .def_ro("warnings", &RunResult::warnings, "Of the model.");
   m.def("run", &run, "scene"_a, "directory"_a, nb::kw_only(), "frames"_a = nb::none(), "resume"_a = false,
-        "progress"_a = nb::none(), "cancel"_a = nb::none(),
+        "resume_from"_a = nb::none(), "keep_states"_a = false, "progress"_a = nb::none(),
+        "cancel"_a = nb::none(),
         "Runs a scene and writes its run directory, as `muslin run` does, to the same bytes. frames: the "
         "last frame,\n"
-        "else the scene's. resume: go on from the last checkpoint, if there is one. After Interrupted,\n"
-        "KeyboardInterrupt, or an exception of a callback the run can be resumed.");
+        "else the scene's. resume: go on from the last checkpoint, if there is one; resume_from: from that "
+        "of this\n"
+        "frame, which needs a run with keep_states. After Interrupted, KeyboardInterrupt, or an exception of "
+        "a\n"
+        "callback the run can be resumed.");
   bind_writer(m);
 
   using Name = std::optional<std::string>;

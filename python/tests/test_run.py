@@ -71,6 +71,23 @@ def test_a_stopped_run_goes_on_to_the_same_bytes(tmp_path, finished):
         assert (directory / name).read_bytes() == (finished / name).read_bytes(), name
 
 
+def test_a_run_goes_back_to_any_frame_of_kept_states(tmp_path, finished):
+    scene = muslin.make_scene(flag_tables())
+    muslin.run(scene, tmp_path / "run", frames=6, keep_states=True)
+    assert muslin.run(scene, tmp_path / "run", frames=8, resume_from=2).first_frame == 2
+    for name in FILES:
+        assert (tmp_path / "run" / name).read_bytes() == (finished / name).read_bytes(), name
+    simulation = muslin.Simulation(scene)
+    with muslin.RunWriter(tmp_path / "run", simulation, frames=8, resume_from=2) as writer:
+        assert simulation.frame == 2
+        simulation.advance()
+        writer.write_frame()
+    assert muslin.Run(tmp_path / "run").frame_count == 4
+    for frame in (-1, 77):
+        with pytest.raises(muslin.Error):
+            muslin.run(scene, tmp_path / "run", resume_from=frame)
+
+
 def test_reads_all_there_is(finished):
     run = muslin.Run(finished)
     assert (run.title, run.status, run.frame_rate, run.frame_count, run.bodies) == ("flag", "finished", 24, 9, ["flag"])

@@ -62,13 +62,18 @@ void Holds::take_anew(std::span<const Pin> pins, double time, ConstVectors posit
   if (holding.size() != pins.size()) return;
   std::size_t first = 0;
   for (std::size_t p = 0; p < pins.size(); ++p) {
-    const Eigen::Isometry3d back = motion_since(pins[p], time).inverse();
-    for (std::size_t i = 0; i < pins[p].vertices.size(); ++i) {
-      const Vec3& now = positions[static_cast<std::size_t>(pins[p].vertices[i])];
-      // A pin that stands still keeps the very bits.
-      if (holding[p]) anchors[first + i] = pins[p].motion.keys.empty() ? now : Vec3(back * now);
+    const Pin& pin = pins[p];
+    const bool moves = !pin.motion.keys.empty();
+    const Eigen::Isometry3d back = motion_since(pin, time).inverse();
+    for (std::size_t i = 0; holding[p] && i < pin.vertices.size(); ++i) {
+      const Vec3& now = positions[static_cast<std::size_t>(pin.vertices[i])];
+      if (pin.sequence) {
+        anchors[first + i] = now - pin.sequence->at(time, static_cast<std::size_t>(pin.points[i]));
+      } else {
+        anchors[first + i] = moves ? Vec3(back * now) : now;
+      }
     }
-    first += pins[p].vertices.size();
+    first += pin.vertices.size();
   }
 }
 
