@@ -134,14 +134,14 @@ std::vector<Comparison> capstan() {
   std::vector<Comparison> numbers;
   for (const double friction : {0.15, 0.3}) {
     const Experiment experiment;
-    constexpr int cells = 80;
+    constexpr int cells = 60;
     experiment.level_sheet("strip.obj", 0.8, 0.02, cells, 2);
-    const double load = 1, seconds = 4, most = 1.15 * std::exp(friction * std::numbers::pi);
+    const double load = 1, seconds = 3, most = 1.15 * std::exp(friction * std::numbers::pi);
     Simulation simulation = experiment.start(fmt::format(
         R"(
 [time]
 frame_rate = 60
-steps_per_frame = 4
+steps_per_frame = 2
 duration = 10
 [contact]
 friction = {0}
@@ -167,11 +167,11 @@ force = [0, {1:.17g}, 0]
 type = "point"
 name = "growing"
 where = {{ plane = {{ point = [0.4, 0, 0], normal = [1, 0, 0] }} }}
-keyframes = [{{ time = 0, value = [0, {1:.17g}, 0] }}, {{ time = 2, value = [0, {1:.17g}, 0] }},
+keyframes = [{{ time = 0, value = [0, {1:.17g}, 0] }}, {{ time = 1, value = [0, {1:.17g}, 0] }},
   {{ time = {2:.17g}, value = [0, {3:.17g}, 0] }}]
 )",
-        friction, -load / 3, 2 + seconds, -load * most / 3));
-    advance(simulation, 120);
+        friction, -load / 3, 1 + seconds, -load * most / 3));
+    advance(simulation, 60);
     const Vec3 settled = simulation.state().positions[0];
     double ratio = 0;
     for (int frame = 0; frame < static_cast<int>(60 * seconds) && ratio == 0; ++frame) {
