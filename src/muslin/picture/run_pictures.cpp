@@ -8,6 +8,7 @@
 #include "muslin/geometry/thicken.hpp"
 #include "muslin/render/plot.hpp"
 #include "muslin/render/scene_view.hpp"
+#include "muslin/scene/colours.hpp"
 #include "muslin/surface/edge_stretch.hpp"
 
 namespace muslin {

@@ -4,12 +4,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "muslin/cache/run_reader.hpp"
+#include "muslin/contact/crossings.hpp"
 #include "muslin/core/progress.hpp"
 #include "muslin/render/camera.hpp"
 #include "muslin/render/image.hpp"
 #include "muslin/render/raytrace.hpp"
+#include "muslin/scene/model.hpp"
 
 namespace muslin {
 
