@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "command.hpp"
-#include "picture.hpp"
 #include <fmt/format.h>
 
 #include "muslin/muslin.hpp"
