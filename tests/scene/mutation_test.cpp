@@ -1,4 +1,5 @@
 // Damaged scene files give a scene or an Error, never anything else: a small, repeatable fuzzer.
+#include <cmath>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -6,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "muslin/scene/model.hpp"
 #include "muslin/scene/scene.hpp"
 
 namespace muslin {
@@ -45,6 +47,54 @@ force = [1, 2, 3]
 until = 3
 [[probe]]
 at = [1, 2, 3]
+[[collider]]
+shape = "capsule"
+points = [[0, 0, 0], [1, 0, 0]]
+radius = 0.1
+pivot = [0, 0, 0]
+keyframes = [{ time = 0 }, { time = 1, rotate = [0, 90, 0] }]
+[contact]
+friction = 0.4
+mode = "converged"
+)";
+}
+
+/// Nothing but colliders, which need no files.
+std::string seed_colliders() {
+  return R"(
+[[collider]]
+name = "ball"
+shape = "sphere"
+center = [0, 1, 0]
+radius = 0.25
+density = 700
+velocity = [1, 0, 0]
+angular_velocity = [0, 90, 0]
+[[collider]]
+shape = "plane"
+normal = [0, 1, 0.5]
+[[collider]]
+shape = "box"
+center = [3, 0, 0]
+size = [1, 2, 1]
+rotate = [0, 30, 0]
+pivot = [0, 0, 0]
+keyframes = [{ time = 0, translate = [0, 1, 0] }, { time = 1, rotate = [0, 90, 0] }]
+[[collider]]
+shape = "capsule"
+points = [[0, 0, 3], [1, 0, 3]]
+radius = 0.1
+density = 100
+[[pin]]
+body = "ball"
+until = 0.5
+[[force]]
+type = "point"
+body = "ball"
+force = [1, 0, 0]
+where = { nearest = [0, 2, 0] }
+[contact]
+distance = 0.01
 )";
 }
 
@@ -79,7 +129,7 @@ TEST(Mutation, ADamagedSceneIsASceneOrAnError) {
     for (unsigned changes = 1 + random() % 4; changes > 0; --changes) mutate(text, random);
     try {
       const Scene scene = parse_scene(text, "scene.toml");
-      EXPECT_FALSE(scene.bodies.empty());
+      EXPECT_FALSE(scene.bodies.empty() && scene.colliders.empty());
       EXPECT_FALSE(scene.resolved.empty());
       ++scenes;
     } catch (const Error& error) {
@@ -90,6 +140,26 @@ TEST(Mutation, ADamagedSceneIsASceneOrAnError) {
   }
   EXPECT_GT(scenes, 40);
   EXPECT_GT(errors, 1000);
+}
+
+TEST(Mutation, DamagedCollidersAreAModelOrAnError) {
+  std::mt19937 random(13);
+  int models = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::string text = seed_colliders();
+    for (unsigned changes = 1 + random() % 4; changes > 0; --changes) mutate(text, random);
+    try {
+      const Model model = build_model(parse_scene(text, "scene.toml"));
+      for (std::size_t v = 0; v < model.vertex_count(); ++v) {
+        EXPECT_TRUE(model.rest_positions[v].allFinite()) << text;
+        EXPECT_TRUE(std::isfinite(model.masses[v]) && model.masses[v] >= 0) << text;
+      }
+      ++models;
+    } catch (const Error& error) {
+      EXPECT_FALSE(error.remedy().empty()) << error.what();
+    }
+  }
+  EXPECT_GT(models, 30);
 }
 
 TEST(Mutation, ADamagedSettingOfTheCommandLineIsASceneOrAnError) {

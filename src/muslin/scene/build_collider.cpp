@@ -22,6 +22,7 @@ using Shape = ColliderSettings::Shape;
 
 /// A plane is shown this many times as wide as what is around it.
 constexpr double plane_reach = 2;
+constexpr double smallest_volume = 1e-21;  // [m³]
 
 /// Where a box or mesh stands in the world.
 Eigen::Affine3d placed(const ColliderSettings& c) {
@@ -131,6 +132,16 @@ void follow_sequence(const Scene& scene, const ColliderSettings& c, BuiltCollide
   body.mesh.positions = built.motion.start;
 }
 
+/// Not too far away, before and after it was moved.
+void require_usable(const Body& body, const ColliderSettings& settings) {
+  try {
+    muslin::require_usable(body.mesh, settings.mesh);
+  } catch (const Error& error) {
+    throw Error(error.kind(), settings.place, fmt::format("collider {}: {}", body.name, error.problem()),
+                error.remedy());
+  }
+}
+
 /// Any four points carry what has no mass: those of its bounding box.
 AffineFrame box_frame(const Box& bounds) {
   AffineFrame frame;
@@ -164,12 +175,7 @@ BuiltCollider build_collider(const Scene& scene, const ColliderSettings& setting
     const Eigen::Affine3d place = placed(settings);
     for (Vec3& x : body.mesh.positions) x = place * x;
   }
-  try {
-    require_usable(body.mesh, settings.mesh);
-  } catch (const Error& error) {
-    throw Error(error.kind(), settings.place, fmt::format("collider {}: {}", body.name, error.problem()),
-                error.remedy());
-  }
+  require_usable(body, settings);
   body.report = inspect(body.mesh);
   body.sheet = !body.report.closed;
   if (settings.shape == Shape::mesh) {
@@ -179,6 +185,12 @@ BuiltCollider build_collider(const Scene& scene, const ColliderSettings& setting
   if (settings.is_free()) {
     if (settings.shape == Shape::mesh) require_solid(settings, body.report, body.mesh);
     const MassProperties mass = mass_of(settings, body);
+    if (!(mass.volume > smallest_volume)) {
+      throw Error(ErrorKind::input, settings.place,
+                  fmt::format("collider {}: its volume of {:.3g} m³ is too small to have mass", body.name,
+                              mass.volume),
+                  "lengths are metres: set `scale`");
+    }
     body.frame = equimomental_frame(mass);
     body.statistics.mass = *settings.density * mass.volume;
   } else if (!settings.sequence.empty()) {
@@ -194,6 +206,7 @@ BuiltCollider build_collider(const Scene& scene, const ColliderSettings& setting
     const auto corners = body.frame.corners();
     built.motion.start.assign(corners.begin(), corners.end());
   }
+  require_usable(body, settings);
   body.mean_edge = mean_edge(body.mesh.positions, triangulate(body.mesh).triangles);
   if (body.is_rigid()) {
     body.skin = embed(body.frame, body.mesh.positions);

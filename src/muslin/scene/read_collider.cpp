@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "muslin/core/nearest_name.hpp"
+#include "muslin/geometry/inspect.hpp"
 #include "muslin/scene/names.hpp"
 #include "muslin/scene/read_parts.hpp"
 #include "muslin/scene/vocabulary.hpp"
@@ -11,6 +12,8 @@ namespace muslin {
 namespace {
 
 using Shape = ColliderSettings::Shape;
+
+constexpr double smallest = 1e-6;  // length of a shape [m]
 
 /// The shape decides which keys are known.
 Shape read_shape(const TomlValue& value, const std::string& title) {
@@ -34,7 +37,7 @@ void read_points(const TomlTable& table, ColliderSettings& collider) {
                       "give the ends of its axis, [[x, y, z], [x, y, z]]");
   for (std::size_t i = 0; i < 2; ++i)
     collider.points[i] = to_vector(points->items[i], "a point of `points`", "m");
-  if (!((collider.points[1] - collider.points[0]).norm() > 0))
+  if (!((collider.points[1] - collider.points[0]).stableNorm() >= smallest))
     throw table.error("points", "the two `points` are one", "use `shape = \"sphere\"` for a ball");
 }
 
@@ -45,16 +48,17 @@ void read_geometry(const TomlTable& table, ColliderSettings& collider) {
       if (table.has("normal")) collider.normal = read_direction(table, "normal", "[0, 1, 0]");
       break;
     case Shape::sphere:
-      collider.radius = table.number("radius", "m", Range::positive());
+      collider.radius = table.number("radius", "m", {smallest, largest_coordinate, false});
       break;
     case Shape::capsule:
       read_points(table, collider);
-      collider.radius = table.number("radius", "m", Range::positive());
+      collider.radius = table.number("radius", "m", {smallest, largest_coordinate, false});
       break;
     case Shape::box: {
       const TomlValue* size = table.find("size");
       if (size == nullptr) collider.size = table.vector("size", "m");  // says what is missing
-      collider.size = to_vector(*size, "`size` of " + table.title(), "m", Range::positive());
+      collider.size =
+          to_vector(*size, "`size` of " + table.title(), "m", {smallest, largest_coordinate, false});
       collider.rotate = table.vector("rotate", "degrees", Vec3::Zero());
       break;
     }
@@ -97,7 +101,7 @@ void read_motion(const TomlTable& table, ColliderSettings& collider) {
         throw table.error("keyframes", "a plane does not turn", "use a box, or leave `rotate` out");
     }
   }
-  if (table.has("density")) collider.density = table.number("density", "kg/m³", Range::positive());
+  if (table.has("density")) collider.density = table.number("density", "kg/m³", {1e-6, 1e9, false});
   if (collider.is_free() && !collider.motion.keys.empty()) {
     throw table.error("density", "`density` makes a body that moves by itself, `keyframes` say how it moves",
                       "keep one of them; a [[pin]] holds or moves a body for a while");
