@@ -106,9 +106,8 @@ TEST(RigidPrediction, Bdf2StaysRigidAndKeepsNearlyAllSpin) {
   const double dt = 0.01, turn = 0.05;
   const State start = spinning(Vec3(0.2, 0.2, 0.2), turn / dt * Vec3(0, 0, 1), Vec3(0, 1, 0));
   State state = start;
-  drift(Integrator::bdf2, dt, state);
-  const double first = angular_momentum(state).norm();
-  for (int i = 0; i < 99; ++i) drift(Integrator::bdf2, dt, state);
+  const double first = angular_momentum(start).norm();
+  for (int i = 0; i < 100; ++i) drift(Integrator::bdf2, dt, state);
   EXPECT_LT(worst_length_change(state, start), 1e-11);
   EXPECT_NEAR(angular_momentum(state).norm(), first, 3e-3 * first);
 }

@@ -58,7 +58,8 @@ void predict_rigid(Integrator integrator, const State& state, std::size_t first,
   for (Vec3& arm : arms) arm -= centre;
   for (Vec3& v : arms_velocities) v -= velocity;
 
-  if (integrator == Integrator::bdf2) {
+  // BDF2 begins with a step of implicit Euler.
+  if (integrator == Integrator::bdf2 && context.dt < context.length) {
     Four predicted = four(context.inertial_prediction, first);
     const Vec3 middle = mean(predicted);
     for (Vec3& x : predicted) x -= middle;
