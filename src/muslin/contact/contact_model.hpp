@@ -28,7 +28,7 @@ struct ContactModel {
   StepLimits limits;  ///< gap floor; which vertices are prescribed, which move as one
   // For messages; may be empty.
   std::vector<std::string> names;  ///< of the surface's bodies
-  std::vector<int> faces;          ///< #T, of the user's mesh, from 0
+  std::vector<int> faces;          ///< #T, of the user's mesh, from 0; −1 of balls and capsules
 };
 
 }  // namespace muslin

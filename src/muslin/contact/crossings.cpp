@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -41,6 +42,7 @@ std::string body_name(const ContactModel& model, int body) {
 
 std::string feature_name(const ContactModel& model, int triangle, int body) {
   if (triangle < 0) return body_name(model, body);
+  if (!model.faces.empty() && model.faces[index(triangle)] < 0) return body_name(model, body);
   if (!model.faces.empty())
     return fmt::format("face {} of {}", model.faces[index(triangle)], body_name(model, body));
   const std::span<const Vec3i> triangles = model.surface->triangles();
@@ -86,8 +88,12 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
       c.kind = Crossing::Kind::beneath;
       c.first_triangle = owners.of_point[index(pair.first)];
     }
-    for (std::size_t i = 0; i < index(first_feature_size(pair.kind)); ++i)
-      c.at += at.weights[i] * x[index(pair.points[i])];
+    // On the surface of the thinner body: the middle of a ball is where nobody sees anything.
+    const std::size_t size = index(first_feature_size(pair.kind)), count = index(pair.point_count());
+    const bool second_is_thinner = pair.kind != PairKind::point_plane &&
+                                   surface.radius_of(pair.points[last]) < surface.radius_of(pair.points[0]);
+    for (std::size_t i = second_is_thinner ? size : 0; i < (second_is_thinner ? count : size); ++i)
+      c.at += std::abs(at.weights[i]) * x[index(pair.points[i])];
     if (pair.kind != PairKind::point_plane && c.first_triangle > c.second_triangle) {
       std::swap(c.first_triangle, c.second_triangle);
       std::swap(c.first_body, c.second_body);

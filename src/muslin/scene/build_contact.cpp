@@ -109,7 +109,7 @@ class ContactBuilder {
       }
       case Shape::sphere: {
         const int point = add_point(body, body.frame.centre);
-        add_triangle(Vec3i::Constant(point), 0);
+        add_triangle(Vec3i::Constant(point), -1);
         contact.radius = settings.radius;
         contact.frame = frame_of(body);
         break;
@@ -118,7 +118,7 @@ class ContactBuilder {
         const Eigen::Isometry3d start = start_of(body);
         const int a = add_point(body, start * settings.points[0]),
                   b = add_point(body, start * settings.points[1]);
-        add_triangle({a, b, b}, 0);
+        add_triangle({a, b, b}, -1);
         contact.radius = settings.radius;
         contact.frame = frame_of(body);
         break;

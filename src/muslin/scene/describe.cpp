@@ -116,7 +116,8 @@ Json crossings_json(const Model& model, std::span<const Crossing> crossings) {
     const ContactModel& contact = *model.contact;
     const auto name = [&](int body) { return contact.names[static_cast<std::size_t>(body)]; };
     const auto face = [&](int triangle) {
-      return triangle < 0 ? Json(nullptr) : Json(contact.faces[static_cast<std::size_t>(triangle)]);
+      const int number = triangle < 0 ? -1 : contact.faces[static_cast<std::size_t>(triangle)];
+      return number < 0 ? Json(nullptr) : Json(number);
     };
     const char* kind = c.kind == Crossing::Kind::crossing    ? "crossing"
                        : c.kind == Crossing::Kind::too_close ? "too close"

@@ -15,7 +15,7 @@ namespace muslin {
 /// `colliders` (each with `name`, `shape`, `movement`, …), `contact` (null if nothing can touch), `pins`,
 /// `forces`, `probes`, `warnings`.
 /// `crossings` of its start become a list of the same name, each with `kind`, `bodies`, `faces` (counted from
-/// 0 in the mesh, null of a plane) and `at`.
+/// 0 in the mesh, null of round shapes and planes) and `at`.
 std::string describe_json(const Model& model, std::span<const Crossing> crossings = {});
 /// Its `bodies` and `colliders` alone: stats.json.
 std::string statistics_json(const Model& model);
