@@ -1,5 +1,6 @@
 // The model: all that does not change during a run.
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "arrays.hpp"
@@ -9,6 +10,7 @@
 #include "simulation_object.hpp"
 #include <fmt/format.h>
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -35,25 +37,28 @@ void bind_body(nb::module_& m) {
       .def_ro("name", &Body::name)
       .def_prop_ro(
           "model", [](const Body& b) { return name_of(body_model_names(), b.model); },
-          "\"lattice\" or \"shell\".")
+          "\"lattice\" or \"shell\"; of colliders \"rigid\" or \"sequence\".")
       .def_prop_ro(
           "mesh", [](const Body& b) -> const Mesh& { return b.mesh; }, inside,
           "The user's mesh, placed in the world: the skin at rest.")
       .def_prop_ro(
-          "solid", [](const Body& b) { return b.is_shell() ? nullptr : &b.solid; }, inside,
+          "solid", [](const Body& b) { return b.has_lattice() ? &b.solid : nullptr; }, inside,
           nb::sig("def solid(self) -> Mesh | None"), "The closed mesh that was filled with voxels.")
       .def_prop_ro(
           "report", [](const Body& b) -> const MeshReport& { return b.report; }, inside, "Of the mesh.")
+      .def_prop_ro(
+          "is_collider", [](const Body& b) { return !b.is_soft(); }, "Of [[collider]], not of [[body]].")
+      .def_ro("prescribed", &Body::prescribed, "Moves as it is told, not as it is pushed; it has no mass.")
       .def_ro("sheet", &Body::sheet, "Thin: a shell, or a mesh that was given a thickness.")
       .def_ro("thickness", &Body::thickness, "Of a sheet of voxels [m].")
       .def_prop_ro(
-          "lattice", [](const Body& b) { return b.is_shell() ? nullptr : &b.lattice; }, inside,
+          "lattice", [](const Body& b) { return b.has_lattice() ? &b.lattice : nullptr; }, inside,
           nb::sig("def lattice(self) -> Lattice | None"))
       .def_prop_ro(
-          "springs", [](const Body& b) { return b.is_shell() ? nullptr : &b.springs; }, inside,
+          "springs", [](const Body& b) { return b.has_lattice() ? &b.springs : nullptr; }, inside,
           nb::sig("def springs(self) -> Springs | None"))
       .def_prop_ro(
-          "contour", [](const Body& b) { return b.is_shell() ? nullptr : &b.contour; }, inside,
+          "contour", [](const Body& b) { return b.has_lattice() ? &b.contour : nullptr; }, inside,
           nb::sig("def contour(self) -> Contour | None"))
       .def_prop_ro(
           "shell", [](const Body& b) { return b.is_shell() ? &b.shell : nullptr; }, inside,
@@ -104,9 +109,26 @@ void bind_model(nb::module_& m) {
           "rest_positions", [](Self self) { return view(self.p->rest_positions, self.h); },
           "(V, 3) of all bodies, one after the other [m].")
       .def_prop_ro(
-          "masses", [](Self self) { return view(self.p->masses, self.h); }, "(V,) [kg]")
+          "masses", [](Self self) { return view(self.p->masses, self.h); },
+          "(V,) [kg]; 0 of what moves as it is told.")
       .def_prop_ro("vertex_count", &Model::vertex_count)
       .def_ro("warnings", &Model::warnings, "What the user should know before a run.")
+      .def(
+          "crossings",
+          [](const Model& model, const std::optional<ArrayLike>& positions) {
+            std::vector<Vec3> at = model.rest_positions;
+            if (positions) at = as_vectors(*positions, "positions", model.vertex_count());
+            std::vector<std::string> sentences;
+            if (!model.contact) return sentences;
+            const nb::gil_scoped_release nogil;
+            for (const Crossing& crossing : find_crossings(*model.contact, at))
+              sentences.push_back(describe(*model.contact, crossing));
+            return sentences;
+          },
+          "positions"_a = nb::none(),
+          "Where surfaces cross or are too close at these positions (V, 3), or at the start: a sentence "
+          "each. Such\n"
+          "positions are refused by simulations.")
       .def(
           "describe", [](const Model& model) { return from_json(describe_json(model)); },
           "What `muslin check --json` prints, as Python objects.")

@@ -168,9 +168,15 @@ class Bodies {
  private:
   static int find(const RunReader& run, const std::optional<std::string>& body) {
     if (body) return static_cast<int>(choice(*body, run.bodies(), "body of the run"));
-    if (run.bodies().size() != 1)
+    int only = -1, soft = 0;
+    for (int b = 0; b < static_cast<int>(run.bodies().size()); ++b) {
+      if (run.is_collider(b)) continue;
+      only = b;
+      ++soft;
+    }
+    if (soft != 1)
       throw Error(ErrorKind::usage, "the run has several bodies", "name one of " + name_list(run.bodies()));
-    return 0;
+    return only;
   }
   int index_;
 };
@@ -186,8 +192,7 @@ int frame_of(const RunReader& run, int frame) {
 
 int lattice_body(const RunReader& run, const std::optional<std::string>& body) {
   const int index = Bodies(run, body).index();
-  if (run.is_shell(index))
-    throw Error(ErrorKind::usage, "the body is a shell, which has no lattice", "take its skin");
+  if (!run.has_lattice(index)) throw Error(ErrorKind::usage, "the body has no lattice", "take its skin");
   return index;
 }
 
@@ -269,7 +274,8 @@ void bind_run(nb::module_& m) {
       .def_prop_ro("frame_count", &RunReader::frame_count,
                    "Complete frames when it was opened, with frame 0.")
       .def_prop_ro(
-          "bodies", [](const RunReader& run) { return run.bodies(); }, "Their names.")
+          "bodies", [](const RunReader& run) { return run.bodies(); },
+          "Their names, those of colliders last.")
       .def_prop_ro("last_frame", &RunReader::last_frame, "That the run has or, unfinished, was to reach.")
       .def(
           "colour",
@@ -278,9 +284,13 @@ void bind_run(nb::module_& m) {
           },
           "body"_a = nb::none(), "Of a body in pictures: red, green, blue from 0 to 1 (sRGB), shape (3,).")
       .def(
-          "is_shell",
-          [](const RunReader& run, const Name& body) { return run.is_shell(Bodies(run, body).index()); },
-          "body"_a = nb::none())
+          "has_lattice",
+          [](const RunReader& run, const Name& body) { return run.has_lattice(Bodies(run, body).index()); },
+          "body"_a = nb::none(), "Shells and colliders have none, and no contour.")
+      .def(
+          "is_collider",
+          [](const RunReader& run, const Name& body) { return run.is_collider(Bodies(run, body).index()); },
+          "body"_a)
       .def(
           "mesh",
           [](const RunReader& run, const Name& body, const std::string& surface) -> const Mesh& {

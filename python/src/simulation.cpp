@@ -43,8 +43,8 @@ Array<double, -1, 3> carried(const Self& self, const std::optional<std::string>&
                              const std::string& surface, const std::vector<Vec3>& vectors) {
   const Body& body = find_body(*self.model(), name);
   const bool contour = choice(surface, {"skin", "contour"}, "surface") == 1;
-  if (contour && body.is_shell())
-    throw Error(ErrorKind::usage, "the body \"" + body.name + "\" is a shell, which has no contour",
+  if (contour && !body.has_lattice())
+    throw Error(ErrorKind::usage, "the body \"" + body.name + "\" is no lattice and has no contour",
                 "take its skin");
   const Embedding& embedding = contour ? body.contour.embedding : body.skin;
   std::vector<Vec3> points(embedding.size());
@@ -97,19 +97,22 @@ void bind_simulation(nb::module_& m) {
       "a simulation.")
       .def(
           "__init__",
-          [](Self* self, std::shared_ptr<const Model> model) {
+          [](Self* self, std::shared_ptr<const Model> model, bool allow_tangled) {
             const nb::gil_scoped_release nogil;
-            new (self) Self(std::move(model));
+            new (self) Self(std::move(model), {allow_tangled});
           },
-          "model"_a)
+          "model"_a, nb::kw_only(), "allow_tangled"_a = false,
+          "allow_tangled: start although surfaces cross; these are left free of each other until they part.")
       .def(
           "__init__",
-          [](Self* self, const Scene& scene, const Report& progress, const Cancel& cancel) {
+          [](Self* self, const Scene& scene, bool allow_tangled, const Report& progress,
+             const Cancel& cancel) {
             const nb::gil_scoped_release nogil;
-            new (self) Self(std::make_shared<const Model>(build_model(scene, progress_of(progress, cancel))));
+            new (self) Self(std::make_shared<const Model>(build_model(scene, progress_of(progress, cancel))),
+                            {allow_tangled});
           },
-          "scene"_a, nb::kw_only(), "progress"_a = nb::none(), "cancel"_a = nb::none(),
-          "Builds the scene's model first.")
+          "scene"_a, nb::kw_only(), "allow_tangled"_a = false, "progress"_a = nb::none(),
+          "cancel"_a = nb::none(), "Builds the scene's model first.")
       .def_prop_ro("model", [](const Self& self) { return self.model(); })
       .def_prop_ro(
           "frame", [](const Self& self) { return self.simulation().frame(); }, "The last finished frame.")

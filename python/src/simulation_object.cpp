@@ -128,11 +128,18 @@ void SimulationObject::forget_forces() { forces_.clear(); }
 
 const Body& find_body(const Model& model, const std::optional<std::string>& name) {
   std::vector<std::string> names;
-  for (const Body& body : model.bodies) names.push_back(body.name);
+  const Body* only = nullptr;
+  int soft = 0;
+  for (const Body& body : model.bodies) {
+    names.push_back(body.name);
+    if (!body.is_soft()) continue;
+    ++soft;
+    only = &body;
+  }
   if (name) return model.bodies[choice(*name, names, "body of the model")];
-  if (names.size() != 1)
+  if (soft != 1)
     throw Error(ErrorKind::usage, "the model has several bodies", "name one of " + name_list(names));
-  return model.bodies.front();
+  return *only;
 }
 
 }  // namespace muslin::python

@@ -16,8 +16,8 @@ namespace muslin::python {
 
 class SimulationObject {
  public:
-  explicit SimulationObject(std::shared_ptr<const Model> model)
-      : model_(std::move(model)), simulation_(model_), history_{simulation_.diagnostics()} {}
+  SimulationObject(std::shared_ptr<const Model> model, const SimulationOptions& options)
+      : model_(std::move(model)), simulation_(model_, options), history_{simulation_.diagnostics()} {}
 
   /// Marks the simulation as being worked on by this thread. Made and destroyed with the GIL held, which may
   /// be given up in between. Errors: usage, if it is being worked on already.
@@ -71,7 +71,7 @@ class SimulationObject {
   std::thread::id worker_;
 };
 
-/// The body of the model of this name, or the only one. Errors: usage.
+/// The body of the model of this name, or the only one that is no collider. Errors: usage.
 const Body& find_body(const Model& model, const std::optional<std::string>& name);
 
 }  // namespace muslin::python

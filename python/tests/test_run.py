@@ -95,7 +95,7 @@ def test_reads_all_there_is(finished):
     assert run.last_frame == 8
     assert run.colour().shape == (3,) and (run.colour("flag") <= 1).all()
     assert run.scene["time"]["duration"] == 2
-    assert not run.is_shell()
+    assert run.has_lattice() and not run.is_collider("flag")
     assert run.mesh().face_count == 60
     assert muslin.is_closed(run.mesh("flag", surface="contour"))
     points = run.points(3)
@@ -246,10 +246,10 @@ def test_a_page_for_browsers(finished, tmp_path):
 def test_a_shell_has_neither_contour_nor_lattice(tmp_path):
     muslin.run(muslin.make_scene(shell_tables()), tmp_path / "cloth", frames=2)
     run = muslin.Run(tmp_path / "cloth")
-    assert run.is_shell("cloth")
+    assert not run.has_lattice("cloth")
     assert run.points(2).shape == (49, 3)
-    with pytest.raises(muslin.UsageError, match="shell"):
+    with pytest.raises(muslin.UsageError, match="contour"):
         run.points(0, surface="contour")
     for use in (run.lattice_voxels, run.lattice_rest_positions, lambda: run.lattice_points(0)):
-        with pytest.raises(muslin.UsageError, match="shell"):
+        with pytest.raises(muslin.UsageError, match="no lattice"):
             use()

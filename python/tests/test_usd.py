@@ -33,7 +33,7 @@ def run(tmp_path_factory):
         sheet.positions, sheet.faces, uvs=sheet.uvs, corner_uvs=corners, face_groups={"seam": [3, 4]}, name="flag"
     )
     tables = flag_tables(pin=None, probe=None)
-    cloth = shell_tables()["body"][0] | {"name": "my cloth"}
+    cloth = shell_tables()["body"][0] | {"name": "my cloth", "translate": [0, 0, 5]}
     tables["body"] = [tables["body"][0] | {"mesh": mesh, "colour": [0.1, 0.2, 0.3]}, cloth]
     directory = tmp_path_factory.mktemp("usd") / "run"
     muslin.run(muslin.make_scene(tables), directory, frames=5)

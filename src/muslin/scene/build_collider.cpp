@@ -42,7 +42,7 @@ Mesh plane_around(const ColliderSettings& c, const Box& around) {
 Mesh read_collider_mesh(const Scene& scene, const ColliderSettings& c, std::vector<std::string>& warnings) {
   const std::string file = resolve_path(scene, c.mesh).string();
   try {
-    MeshFile read = read_mesh(file);
+    MeshFile read = scene_mesh(scene, c.mesh);
     if (!read.note.empty()) warnings.push_back(fmt::format("collider {}: {}", c.name, read.note));
     return std::move(read.mesh);
   } catch (const Error& error) {

@@ -125,6 +125,7 @@ struct Simulation::Parts {
   }
   void store_energies();
   void put(State changed);
+  void keep_prescribed(ConstVectors from, Vectors to) const;
   void describe_state(Diagnostics& row) const;
   void finish_frame();
   [[noreturn]] void fail(const StepReport& report) const;
@@ -354,6 +355,14 @@ void Simulation::Parts::finish_frame() {
   wall_ms = 0;
 }
 
+/// What moves as it is told does not move otherwise.
+void Simulation::Parts::keep_prescribed(ConstVectors from, Vectors to) const {
+  for (const Prescribed& motion : model->prescribed) {
+    const auto first = static_cast<std::size_t>(motion.first), count = motion.start.size();
+    std::copy_n(from.subspan(first, count).begin(), count, to.subspan(first, count).begin());
+  }
+}
+
 void Simulation::Parts::put(State changed) {
   const auto energy = [&] {
     double sum = kinetic_energy(model->masses, state.velocities) + tally.pressed;
@@ -455,9 +464,10 @@ void Simulation::set_positions(ConstVectors positions) {
                 fmt::format("the position of vertex {} is not finite or beyond {:.2g} m", lost, farthest),
                 "give finite positions in metres");
   }
-  if (parts.guard) refuse_crossings(*parts.model->contact, positions);
   State changed = parts.state;
   changed.positions.assign(positions.begin(), positions.end());
+  parts.keep_prescribed(parts.state.positions, changed.positions);
+  if (parts.guard && !parts.options.allow_tangled) refuse_crossings(*parts.model->contact, changed.positions);
   parts.put(std::move(changed));
 }
 
@@ -471,6 +481,7 @@ void Simulation::set_velocities(ConstVectors velocities) {
   }
   State changed = parts.state;
   changed.velocities.assign(velocities.begin(), velocities.end());
+  parts.keep_prescribed(parts.state.velocities, changed.velocities);
   parts.put(std::move(changed));
 }
 

@@ -79,8 +79,8 @@ class Simulation {
 
   /// Puts all vertices (#V by 3 [m]) somewhere else, as one would by hand: velocities stay, BDF2 starts anew,
   /// pins that hold take hold where their vertices are now and move on from there, and the change of energy
-  /// counts as work. Contact forgets what stuck. Errors: usage, for another count or for numbers that are not
-  /// finite or beyond 1.5e11 m; input, if surfaces would cross.
+  /// counts as work. Colliders that move as they are told stay. Contact forgets what stuck. Errors: usage,
+  /// for another count or for numbers that are not finite or beyond 1.5e11 m; input, if surfaces would cross.
   void set_positions(ConstVectors positions);
   /// The same for velocities (#V by 3 [m/s]). Errors: usage, for another count or numbers not finite.
   void set_velocities(ConstVectors velocities);
