@@ -74,7 +74,7 @@ def test_a_stopped_run_goes_on_to_the_same_bytes(tmp_path, finished):
 def test_a_run_goes_back_to_any_frame_of_kept_states(tmp_path, finished):
     scene = muslin.make_scene(flag_tables())
     muslin.run(scene, tmp_path / "run", frames=6, keep_states=True)
-    assert muslin.run(scene, tmp_path / "run", frames=8, resume_from=2).first_frame == 2
+    assert muslin.run(scene, tmp_path / "run", frames=8, resume_from=2, keep_states=True).first_frame == 2
     for name in FILES:
         assert (tmp_path / "run" / name).read_bytes() == (finished / name).read_bytes(), name
     simulation = muslin.Simulation(scene)
