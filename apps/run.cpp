@@ -17,6 +17,7 @@ struct RunArguments {
   int frames = -1;
   int threads = 0;
   bool resume = false;
+  bool allow_tangled = false;
   int resume_from = -1;
   bool keep_states = false;
   bool quiet = false;
@@ -34,6 +35,7 @@ void run(const RunArguments& arguments) {
   options.frames = arguments.frames;
   options.resume = arguments.resume || arguments.resume_from >= 0;
   options.resume_from = arguments.resume_from;
+  options.allow_tangled = arguments.allow_tangled;
   options.keep_states = arguments.keep_states;
   options.cancelled = [] { return interrupted(); };
   RunResult result;
@@ -86,6 +88,8 @@ void add_run(CLI::App& program) {
                     "keep the state of every frame, so that --resume-from can take any");
   command->add_option("--set", arguments->set, "KEY=VALUE overrides a setting, e.g. time.duration=2")
       ->allow_extra_args(false);
+  command->add_flag("--allow-tangled", arguments->allow_tangled,
+                    "start although surfaces cross; these are free of each other until they part");
   command->add_flag("--quiet", arguments->quiet, "no progress, only errors and warnings");
   command->callback([arguments] { run(*arguments); });
 }

@@ -128,6 +128,8 @@ TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
   std::vector<std::string> start = words(scratch, "run", 1);
   start.insert(start.end(), {"--set", high});
   EXPECT_EQ(run(scratch, start).code, 3);
+  start.emplace_back("--allow-tangled");
+  EXPECT_EQ(run(scratch, start).code, 0);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     if (options.report) options.report(now);
   };
   const auto model = std::make_shared<const Model>(build_model(scene, building));
-  Simulation simulation(model);
+  Simulation simulation(model, {options.allow_tangled});
   RunWriter writer(options.directory, simulation, total, options.resume,
                    {options.keep_states, options.resume_from});
 
