@@ -98,6 +98,9 @@ class Snapshot:
             uvs = np.empty(2 * len(mesh.loops), np.float32)
             mesh.uv_layers.active.data.foreach_get("uv", uvs)
             self.uvs = uvs.reshape(-1, 2)
+        self.unwrapped = self.uvs is None or uv_areas(self.uvs, self.sizes).all()
+        if not self.unwrapped:
+            self.uvs = None  # threads need a direction on every polygon
         self.pinned = []
         if group is not None:
             self.pinned = [v.index for v in mesh.vertices
@@ -110,6 +113,16 @@ class Snapshot:
         flip = np.linalg.det(self.matrix[:3, :3]) < 0
         return obj_text(self.world(scale) if points is None else points, self.corners, self.sizes, self.uvs,
                         self.pinned, flip)
+
+
+def uv_areas(uvs, sizes):
+    """Whether each polygon has an area in the texture."""
+    first = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+    following = np.arange(1, len(uvs) + 1)
+    following[first + sizes - 1] = first
+    a, b = uvs.astype(float), uvs[following].astype(float)
+    areas = np.add.reduceat(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], first) / 2
+    return np.abs(areas) > 1e-12
 
 
 def pin_group_index(obj):
@@ -156,6 +169,9 @@ def notices_of(obj, taken):
 
     if obj.muslin.pin_group and not taken.pinned:
         say(ERROR, f"No vertex of \"{obj.muslin.pin_group}\" has a weight of 0.5 or more: paint it, or clear Pin Group")
+    if obj.muslin.model == "SHELL" and not taken.unwrapped:
+        say(INFO, "Some polygons have no area in the UV map, which gives the threads their direction: they run along the "
+                  "longest side instead. UV > Unwrap lets you choose")
     scale = np.linalg.norm(taken.matrix[:3, :3], axis=0)
     if scale.max() > 1.0001 * scale.min():
         say(INFO, "The scale differs by axis and is not applied: it is baked as you see it in the world")

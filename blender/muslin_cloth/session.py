@@ -359,6 +359,10 @@ def in_blender(problem, names):
             problem = problem.split(mark, 1)[1]
             problem = problem.lstrip("0123456789:").lstrip()
             break
+    for body, name in names.items():
+        mark = f"/{body}.obj: "
+        if mark in problem.split("; ")[0]:
+            problem = f"{name}: {problem.split(mark, 1)[1]}"
     changed = "the bodies are not those of the run to resume; changed: "
     if changed in problem:
         settings = problem.split(changed)[1].split("; ")[0].split(", ")

@@ -93,8 +93,8 @@ class PointCache(Scratch):
 
 
 class SceneText(Scratch):
-    def square(self, name, **words):
-        points = [(0, 1, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1)]
+    def square(self, name, height=1, **words):
+        points = [(x, height, z) for x, z in ((0, 0), (1, 0), (1, 1), (0, 1))]
         text = scene_text.obj_text(points, [0, 1, 2, 3], [4], **words)
         (self.folder / f"{name}.obj").write_text(text)
 
@@ -108,7 +108,7 @@ class SceneText(Scratch):
 
     def check(self, scene, moving=False):
         self.square("a b", uvs=[(0, 0), (1, 0), (1, 1), (0, 1)], pinned=[0, 1])
-        self.square("solid", pinned=[2])
+        self.square("solid", height=3, pinned=[2])
         (self.folder / "scene.toml").write_text(scene_text.scene_toml(scene, moving))
         return worker.ask(PROGRAM, "check", "--json", str(self.folder / "scene.toml"))
 
