@@ -236,7 +236,8 @@ def scene_input(scene, names, snapshots, first, last):
     gravity = axes.turned(scene.gravity, scale) if scene.use_gravity else np.zeros(3)
     result = SceneInput(title=f"{scene.name} of {os.path.basename(bpy.data.filepath)}", frames=last - first,
                         frame_rate=rate, steps_per_frame=props.steps_per_frame, gravity=tuple(gravity),
-                        air_density=props.air_density, contact=props.use_contact, friction=props.friction)
+                        air_density=props.air_density, contact=props.use_contact,
+                        contact_mode=props.contact_mode.lower(), friction=props.friction)
     for obj in cloth_objects(scene):
         m, name = obj.muslin, names[obj.name]
         cloth = Cloth(name=name, model=m.model.lower(), material=m.fabric, thickness=m.thickness * scale,

@@ -197,6 +197,7 @@ class PHYSICS_PT_muslin_scene(ClothPanel, Panel):
         layout.prop(m, "use_contact")
         column = layout.column()
         column.enabled = m.use_contact
+        column.prop(m, "contact_mode")
         column.prop(m, "friction")
         layout.prop(m, "keep_states")
         gravity = scene.gravity.length * unit_scale(scene) if scene.use_gravity else 0

@@ -63,6 +63,11 @@ class MuslinScene(bpy.types.PropertyGroup):
         name="Air Density", default=1.2, min=0, soft_max=10, description="kg/m³; 0 is no air: neither wind nor drag")
     use_contact: BoolProperty(
         name="Contact", default=True, description="Cloth touches itself, other cloth and colliders; nothing crosses")
+    contact_mode: EnumProperty(
+        name="Contact Steps",
+        items=[("CONVERGED", "Converged", "Every step is solved; colliders that move are followed exactly"),
+               ("FAST", "Fast", "A few iterations a step, for steps of 1/150 s or shorter; a collider that pushes into "
+                                "cloth may be held back by it")])
     friction: FloatProperty(name="Friction", default=0.3, min=0, soft_max=1, description="Of cloth on everything")
     keep_states: BoolProperty(
         name="Keep States", default=True,

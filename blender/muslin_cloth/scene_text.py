@@ -49,6 +49,7 @@ class SceneInput:
     cloths: List[Cloth] = field(default_factory=list)
     colliders: List[Collider] = field(default_factory=list)
     contact: bool = True  # of cloth with itself, with other cloth and with colliders
+    contact_mode: str = "converged"  # or "fast"
     friction: float = 0.3
 
 
@@ -99,7 +100,7 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
         if collider.sequence and moving:
             lines.append(f"sequence = {quoted(collider.sequence)}")
     if scene.contact:
-        lines += ["", "[contact]", f"friction = {number(scene.friction)}"]
+        lines += ["", "[contact]", f'mode = "{scene.contact_mode}"', f"friction = {number(scene.friction)}"]
     if any(scene.gravity):
         lines += ["", "[[force]]", 'type = "gravity"', f"acceleration = {vector(scene.gravity)}"]
     if scene.air_density > 0:

@@ -165,7 +165,11 @@ class Baking(HostTest):
 
 
 class Contact(HostTest):
-    """Cloth meets colliders, standing and animated, and itself."""
+    """Cloth meets colliders, standing and animated."""
+
+    def setUp(self):
+        super().setUp()
+        bpy.context.scene.muslin.use_contact = True
 
     def sheet(self, height, n=12):
         xs = np.linspace(-0.3, 0.3, n + 1)

@@ -105,6 +105,7 @@ class HostTest(unittest.TestCase):
         scene.frame_start, scene.frame_end = 1, 6
         scene.render.fps = 24
         scene.muslin.steps_per_frame = 2
+        scene.muslin.use_contact = False  # costs time; tests of contact switch it on
         self.save("work.blend")
 
     def save(self, name="work.blend"):
