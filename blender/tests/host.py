@@ -125,5 +125,11 @@ class HostTest(unittest.TestCase):
 def main():
     words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     result = unittest.main(module="__main__", argv=["test", *words], exit=False, verbosity=2).result
-    if not result.wasSuccessful():
-        raise SystemExit(3)
+    code = 0 if result.wasSuccessful() else 3
+    if not bpy.app.binary_path:
+        # The bpy module may crash while Python takes it down, after all is done and told.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+    if code:
+        raise SystemExit(code)
