@@ -75,7 +75,10 @@ function arrow(colour) {
 class Force {
   constructor(run, description, bounds, largest, labels) {
     this.description = description;
-    this.track = description.track === undefined ? undefined : run.tracks[description.track];
+    // A force on a rigid body acts on the whole of it.
+    const whole = description.type === 'point' ? run.head.bodies[description.body]?.surfaces.skin.track : undefined;
+    this.track = run.tracks[description.track ?? whole];
+    this.vertices = description.track === undefined ? 1 : this.track.count;
     this.positions = this.track && new Float32Array(3 * this.track.count);
     this.bounds = bounds;
     this.largest = largest;
@@ -128,7 +131,7 @@ class Force {
     this.ends = origins.flatMap((origin) => [origin, origin.clone().addScaledVector(along, length)]);
     const { name, type } = this.description;
     this.anchor = origins[origins.length >> 1].clone().addScaledVector(along, type === 'wind' ? 0 : length);
-    const many = this.track && this.track.count > 1 ? ' each' : '';
+    const many = this.vertices > 1 ? ' each' : '';
     const called = name === `${type}${name.slice(type.length)}` && /^\d+$/.test(name.slice(type.length)) ? type : name;
     this.label.textContent = `${called} ${digits(size)}\u00a0${units[type] ?? ''}${many}`;
   }

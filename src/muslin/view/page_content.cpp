@@ -165,6 +165,9 @@ class Gatherer {
       }
       for (const Chosen& chosen : run_.selections().point_forces)
         if (chosen.force == static_cast<int>(f)) entry["track"] = add_chosen(chosen);
+      const auto& names = run_.bodies();
+      const auto body = std::find(names.begin(), names.end(), force.value("body", Json()));
+      if (body != names.end()) entry["body"] = body - names.begin();
       content_.head["forces"].push_back(std::move(entry));
     }
   }
