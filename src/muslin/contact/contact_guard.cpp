@@ -13,6 +13,8 @@ namespace {
 
 /// Boxes of candidates are wider than the motion by this share of d̂.
 constexpr double margin_share = 0.5;
+/// What is pushed goes this much farther than what pushes it, along slanting normals.
+constexpr double pushed_share = 1.5;
 /// Displacements of more edges than this are limited in pieces, of which there are no more than so many.
 constexpr double edges_at_once = 2;
 constexpr int most_pieces = 256;
@@ -66,16 +68,22 @@ void ContactGuard::begin(ConstVectors q, double length, std::span<const std::uin
   for (std::size_t v = 0; v < prescribed.size(); ++v) held_[v] |= prescribed[v];
 }
 
-void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end) {
+void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end, double margin) {
   const Stopwatch watch(counts_.search_seconds);
   ++counts_.searches;
   memory_.begin.assign(begin.begin(), begin.end());
   memory_.end.assign(end.begin(), end.end());
-  candidates_.update(begin, end, margin_);
+  memory_.margin = margin;
+  candidates_.update(begin, end, margin);
 }
 
-/// Makes sure that all pairs are known for the way from q to q + d.
+/// Makes sure that all pairs are known for the way from q to q + d, and for what is pushed out of the way of held
+/// vertices: that goes about as far as they.
 void ContactGuard::cover(ConstVectors q, ConstVectors d) {
+  double push = 0;
+  for (std::size_t v = 0; v < held_.size(); ++v)
+    if (held_[v] != 0) push = std::max(push, d[v].norm());
+  push *= pushed_share;
   model_->map->apply(q, x_);
   model_->map->apply(d, to_);
   bool covered = !candidates_.lower().empty();
@@ -83,10 +91,10 @@ void ContactGuard::cover(ConstVectors q, ConstVectors d) {
     to_[p] += x_[p];
     if (!covered) continue;
     const Vec3 &low = candidates_.lower()[p], &high = candidates_.upper()[p];
-    covered = (x_[p].array() >= low.array()).all() && (x_[p].array() <= high.array()).all() &&
-              (to_[p].array() >= low.array()).all() && (to_[p].array() <= high.array()).all();
+    covered = (x_[p].array() - push >= low.array()).all() && (x_[p].array() + push <= high.array()).all() &&
+              (to_[p].array() - push >= low.array()).all() && (to_[p].array() + push <= high.array()).all();
   }
-  if (!covered) find_candidates(x_, to_);
+  if (!covered) find_candidates(x_, to_, margin_ + push);
 }
 
 /// A displacement far beyond an edge's length is a blunder of the solver, and would make everything a
@@ -182,7 +190,7 @@ void ContactGuard::leave_tangled(ConstVectors q) {
   if (now == tangled_) return;
   tangled_ = std::move(now);
   candidates_.leave_free(tangled_);
-  if (!memory_.begin.empty()) candidates_.update(memory_.begin, memory_.end, margin_);
+  if (!memory_.begin.empty()) candidates_.update(memory_.begin, memory_.end, memory_.margin);
 }
 
 void ContactGuard::restore(ContactMemory memory) {
@@ -190,7 +198,7 @@ void ContactGuard::restore(ContactMemory memory) {
   if (memory.begin.size() != memory.end.size() || (!memory.begin.empty() && memory.begin.size() != points))
     throw Error(ErrorKind::input, "the checkpoint's contact belongs to other surfaces", "start the run anew");
   memory_ = std::move(memory);
-  if (!memory_.begin.empty()) candidates_.update(memory_.begin, memory_.end, margin_);
+  if (!memory_.begin.empty()) candidates_.update(memory_.begin, memory_.end, memory_.margin);
 }
 
 }  // namespace muslin

@@ -23,6 +23,7 @@ namespace muslin {
 struct ContactMemory {
   std::vector<PairSlip> slips;   ///< by ascending key
   std::vector<Vec3> begin, end;  ///< what candidates were found for, #P by 3 [m]; empty: not yet
+  double margin = 0;             ///< by which their boxes are wider [m]
   double smallest_gap =          ///< at the end of the last step [m]; infinite beyond d̂
       std::numeric_limits<double>::infinity();
 };
@@ -62,7 +63,7 @@ class ContactGuard : public StepGuard {
 
  private:
   std::vector<std::array<int, 2>> crossing(ConstVectors q);
-  void find_candidates(ConstVectors begin, ConstVectors end);
+  void find_candidates(ConstVectors begin, ConstVectors end, double margin);
   void cover(ConstVectors q, ConstVectors d);
   void shorten(Vectors d) const;
 

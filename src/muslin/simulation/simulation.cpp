@@ -521,6 +521,7 @@ std::vector<std::uint8_t> Simulation::checkpoint() const {
   out.values(contact.slips);
   out.values(contact.begin);
   out.values(contact.end);
+  out.value(contact.margin);
   out.value(contact.smallest_gap);
 
   const Diagnostics& row = parts.diagnostics;
@@ -586,6 +587,7 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   contact.slips = in.values<PairSlip>();
   contact.begin = in.values<Vec3>();
   contact.end = in.values<Vec3>();
+  contact.margin = in.value<double>();
   contact.smallest_gap = in.value<double>();
 
   Diagnostics row;
