@@ -165,9 +165,8 @@ class Gatherer {
       }
       for (const Chosen& chosen : run_.selections().point_forces)
         if (chosen.force == static_cast<int>(f)) entry["track"] = add_chosen(chosen);
-      const auto& names = run_.bodies();
-      const auto body = std::find(names.begin(), names.end(), force.value("body", Json()));
-      if (body != names.end()) entry["body"] = body - names.begin();
+      for (std::size_t b = 0; b < run_.bodies().size(); ++b)
+        if (force.value("body", Json()) == Json(run_.bodies()[b])) entry["body"] = b;
       content_.head["forces"].push_back(std::move(entry));
     }
   }
