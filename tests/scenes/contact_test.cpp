@@ -27,7 +27,8 @@ class Watched : public SceneRun {
       const std::size_t found = referee_.crossings(now());
       const double least = simulation().diagnostics().min_distance;
       if (found == 0 && least > 0) continue;
-      ADD_FAILURE() << found << " crossings, min_distance " << least << " m at " << simulation().state().time << " s";
+      ADD_FAILURE() << found << " crossings, min_distance " << least << " m at " << simulation().state().time
+                    << " s";
       return false;
     }
     return true;
@@ -63,7 +64,8 @@ class Watched : public SceneRun {
   }
 
  private:
-  static std::vector<std::string> with_steps_as_frames(const std::string& name, std::vector<std::string> overrides) {
+  static std::vector<std::string> with_steps_as_frames(const std::string& name,
+                                                       std::vector<std::string> overrides) {
     const std::string file = std::string(MUSLIN_SOURCE_DIR) + "/scenes/contact/" + name + ".toml";
     const TimeSettings time = read_scene(file, overrides).time;
     overrides.push_back(fmt::format("time.frame_rate={:.17g}", time.frame_rate * time.steps_per_frame));
@@ -89,6 +91,113 @@ TEST(FoldOnFloor, LiesInFoldsOnTheFloor) {
   ASSERT_TRUE(run.until(0.9));
   EXPECT_GT(run.lowest("cloth"), 0);
   EXPECT_LT(run.highest("cloth"), 0.5);
+}
+
+TEST(RotatingSphere, TakesTheClothAlong) {
+  Watched run("rotating_sphere", {coarse});
+  ASSERT_TRUE(run.until(1.2));
+  const auto angle = [&] { return std::atan2(-run.probe("on the ball").z(), run.probe("on the ball").x()); };
+  EXPECT_NEAR(angle(), 0, 0.1);
+  ASSERT_TRUE(run.until(1.8));  // the ball has turned by a right angle
+  EXPECT_GT(angle(), 0.7);
+  EXPECT_LT(angle(), 1.7);
+}
+
+TEST(Funnel, SheetsRestInTheOrderInWhichTheyFell) {
+  Watched run("funnel");
+  ASSERT_TRUE(run.until(1));
+  const double first = run.probe("middle of the first").y(), second = run.probe("middle of the second").y(),
+               third = run.probe("middle of the third").y();
+  EXPECT_LT(first, second);
+  EXPECT_LT(second, third);
+  EXPECT_LT(third, 0.15);  // down from 0.59, in the lower half
+}
+
+TEST(TwistedCylinder, NarrowsAsItTwists) {
+  Watched run("twisted_cylinder");
+  const auto width = [&] { return (run.probe("middle above") - run.probe("middle below")).norm(); };
+  EXPECT_NEAR(width(), 0.16, 1e-3);
+  ASSERT_TRUE(run.until(1));
+  EXPECT_LT(width(), 0.12);
+  EXPECT_LT(run.simulation().diagnostics().max_stretch, 1.25);
+}
+
+TEST(ReefKnot, HoldsWhenItIsPulled) {
+  Watched run("reef_knot", {"pin.0.keyframes=[{ time = 0 }, { time = 0.8, translate = [-0.27, 0, 0] }]",
+                            "pin.1.keyframes=[{ time = 0 }, { time = 0.8, translate = [0.27, 0, 0] }]"});
+  // How far the bights reach through one another.
+  const auto overlap = [&] {
+    double left = -INFINITY, right = INFINITY;
+    for (const Vec3& x : run.points("left")) left = std::max(left, x.x());
+    for (const Vec3& x : run.points("right")) right = std::min(right, x.x());
+    return left - right;
+  };
+  const double loose = overlap();
+  EXPECT_GT(loose, 0.3);
+  ASSERT_TRUE(run.until(0.8));
+  EXPECT_GT(overlap(), 0);  // still linked, though the hands went apart by half a metre
+  EXPECT_LT(overlap(), 0.6 * loose);
+}
+
+TEST(StackUnderBall, StaysInOrderUnderTheBall) {
+  Watched run("stack_under_ball");
+  ASSERT_TRUE(run.until(0.3));
+  const auto height = [&](int i) { return run.probe(fmt::format("middle of sheet {}", i)).y(); };
+  for (int i = 1; i < 10; ++i) EXPECT_LT(height(i), height(i + 1)) << i;
+  EXPECT_GT(height(1), 0);
+  EXPECT_LT(run.middle("ball").y(), 0.12);  // it has fallen on the stack
+  EXPECT_GT(run.middle("ball").y(), 0.06);  // its radius
+}
+
+TEST(FlagBall, CatchesTheBallWhichRolls) {
+  Watched run("flag_ball");
+  ASSERT_TRUE(run.until(1.5));
+  EXPECT_TRUE(run.held_are_still());
+  EXPECT_LT(run.probe("centre").y(), -0.3);
+  const Vec3 first = run.middle("ball");
+  EXPECT_LT(first.y(), 0.7);
+  ASSERT_TRUE(run.until(3));
+  const Vec3 then = run.middle("ball");
+  EXPECT_GT(then.y(), -3);                // caught
+  EXPECT_GT((then - first).norm(), 0.5);  // and rolling
+  EXPECT_GT(run.simulation().diagnostics().min_distance, 0);
+}
+
+TEST(FlagOnPole, SlidesOffWithLittleFrictionAndStaysWithMuch) {
+  // It lies 3 m to one side and 7 m to the other: friction holds it if exp(mu pi) is above their ratio.
+  Watched smooth("flag_on_pole"), rough("flag_on_pole", {"contact.friction=0.6"});
+  ASSERT_TRUE(smooth.until(3));
+  EXPECT_LT(smooth.highest("flag"), -1);  // below the pole
+  ASSERT_TRUE(rough.until(3));
+  EXPECT_GT(rough.highest("flag"), -0.2);  // over it
+}
+
+TEST(LatticeOnStairs, ComesToRestOnAStep) {
+  Watched run("lattice_on_stairs", {"body.bear.voxel_width=0.008"});
+  ASSERT_TRUE(run.until(1.8));
+  EXPECT_LT(run.speed("bear"), 0.05);
+  double lowest = INFINITY;
+  std::vector<Vec3> skin(run.body("bear").mesh.positions.size());
+  run.body("bear").skin.apply(run.points("bear"), skin);
+  for (const Vec3& x : skin) lowest = std::min(lowest, x.y());
+  const double step = std::round(lowest / -0.07);
+  EXPECT_GE(step, 1);
+  EXPECT_LE(step, 5);
+  EXPECT_NEAR(lowest, -0.07 * step, 0.003);
+}
+
+TEST(CurtainWalk, GivesWay) {
+  Watched run("curtain_walk");
+  const auto farthest = [&] {
+    double z = -INFINITY;
+    for (const char* name : {"left", "right"})
+      for (const Vec3& x : run.points(name)) z = std::max(z, x.z());
+    return z;
+  };
+  const double before = farthest();
+  ASSERT_TRUE(run.until(1.25));
+  EXPECT_GT(farthest(), before + 0.1);
+  EXPECT_TRUE(run.held_are_still());
 }
 
 }  // namespace
