@@ -35,7 +35,8 @@ class SceneRun {
     for (const Probe& probe : model().probes) {
       if (probe.name != name) continue;
       Vec3 point;
-      probe.point.apply(now(), std::span(&point, 1));
+      probe.point.apply(model().of(model().bodies[static_cast<std::size_t>(probe.body)], now()),
+                        std::span(&point, 1));
       return point;
     }
     throw std::invalid_argument("no probe " + name);

@@ -27,7 +27,9 @@ double lattice_stiffness(const Body& body, const BodySettings& settings) {
   const ElasticModuli moduli = elastic_moduli(
       {m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus}, settings.bracing, m.volume_modulus);
   const double width = body.lattice.width;
-  return stiffness_share * moduli.youngs * (body.sheet ? std::min(width, body.thickness) : width);
+  // Of a sheet, springs are as stiff as its thickness asks for, unless every voxel counts full.
+  const bool thin = body.sheet && settings.mass == BodySettings::Mass::solid;
+  return stiffness_share * moduli.youngs * (thin ? std::min(width, body.thickness) : width);
 }
 
 class ContactBuilder {

@@ -17,8 +17,9 @@ namespace muslin {
 /// edge.
 ///
 /// Stiffness of a contact: of a shell 0.15 × its mean membrane modulus [N/m]; of a lattice 0.15 × Young's
-/// modulus along its voxels × voxel width (or thickness, if that is less); of a rigid body mass/step², which
-/// lets it sink in by what it would fall in one step, and no more; colliders take that of the other.
+/// modulus along its voxels × voxel width (or thickness, of a thinner sheet whose voxels count by their
+/// share); of a rigid body mass/step², which lets it sink in by what it would fall in one step, and no more;
+/// colliders take that of the other.
 ///
 /// Needs all bodies; adds to model.warnings. Errors: input, if the integrator is explicit.
 void build_contact(Model& model);
