@@ -1,8 +1,11 @@
 // Rigid bodies against closed forms: falling, spinning, resting, sliding, held and let go.
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "muslin/simulation/simulation.hpp"
 
@@ -125,6 +128,34 @@ TEST(RigidBody, IsHeldByAPinUntilItIsLetGo) {
   EXPECT_NEAR(centre(simulation).y(), 0.5 - 5 * t * t, 0.02);
   EXPECT_NEAR(velocity(simulation).x(), 0.4 + t / mass, 0.01);
   EXPECT_LT(out_of_round(simulation, 0.1), 1e-5);
+}
+
+/// A box that rises into falling cloth far faster than contact reaches keeps to its keyframes and lifts it.
+TEST(Collider, LiftsClothThatIsInItsWay) {
+  const auto file = std::filesystem::temp_directory_path() / ("lifted_" + std::to_string(::getpid()) + ".obj");
+  {
+    std::ofstream out(file);
+    constexpr int n = 12;
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) out << "v " << 0.05 * (i - n / 2) << " 0 " << 0.05 * (j - n / 2) << "\n";
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const int v = i * (n + 1) + j + 1;
+        out << "f " << v << " " << v + 1 << " " << v + n + 2 << " " << v + n + 1 << "\n";
+      }
+  }
+  Simulation simulation(build("[time]\nsteps_per_frame = 8\n[[body]]\nname = 'cloth'\nmesh = '" + file.string() +
+                              "'\nmodel = 'shell'\nmaterial = 'cotton'\n" + gravity +
+                              "[[collider]]\nname = 'box'\nshape = 'box'\ncenter = [0, -0.3, 0]\n"
+                              "size = [0.3, 0.2, 0.3]\nkeyframes = [{time = 0, translate = [0, 0, 0]}, "
+                              "{time = 0.4, translate = [0, 0.4, 0]}]\n"));
+  std::filesystem::remove(file);
+  for (int frame = 0; frame < 11; ++frame) simulation.advance();
+  EXPECT_NEAR(centre(simulation).y(), 0.1, 1e-9);
+  const Body& cloth = simulation.model().bodies[0];
+  const ConstVectors x = simulation.model().of(cloth, simulation.state().positions);
+  EXPECT_GT(x[x.size() / 2].y(), 0.2);
+  EXPECT_GT(simulation.diagnostics().min_distance, 0);
 }
 
 }  // namespace
