@@ -65,9 +65,8 @@ class MuslinScene(bpy.types.PropertyGroup):
         name="Contact", default=True, description="Cloth touches itself, other cloth and colliders; nothing crosses")
     contact_mode: EnumProperty(
         name="Contact Steps",
-        items=[("CONVERGED", "Converged", "Every step is solved; colliders that move are followed exactly"),
-               ("FAST", "Fast", "A few iterations a step, for steps of 1/150 s or shorter; a collider that pushes into "
-                                "cloth may be held back by it")])
+        items=[("FAST", "Fast", "A few iterations a step, for steps of 1/150 s or shorter; nothing crosses either way"),
+               ("CONVERGED", "Converged", "Every step is solved: slower by far, and the bake stops where it cannot be")])
     friction: FloatProperty(name="Friction", default=0.3, min=0, soft_max=1, description="Of cloth on everything")
     keep_states: BoolProperty(
         name="Keep States", default=True,

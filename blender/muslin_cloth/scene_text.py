@@ -49,7 +49,7 @@ class SceneInput:
     cloths: List[Cloth] = field(default_factory=list)
     colliders: List[Collider] = field(default_factory=list)
     contact: bool = True  # of cloth with itself, with other cloth and with colliders
-    contact_mode: str = "converged"  # or "fast"
+    contact_mode: str = "fast"  # or "converged"
     friction: float = 0.3
 
 

@@ -138,7 +138,7 @@ class SceneText(Scratch):
         self.assertEqual(told["force"][1]["gust"], 0.5)
         scene.wind = scene_text.Wind([(3, 0, 0)] * 5)
         self.assertEqual(tomllib.loads(scene_text.scene_toml(scene))["force"][1]["velocity"], [3, 0, 0])
-        self.assertEqual(told["contact"], {"mode": "converged", "friction": 0.3})
+        self.assertEqual(told["contact"], {"mode": "fast", "friction": 0.3})
         self.assertEqual([b.get("self_contact", True) for b in told["body"]], [True, False])
         scene.colliders = [scene_text.Collider("ball"), scene_text.Collider("arm", "arm.pc2")]
         colliders = tomllib.loads(scene_text.scene_toml(scene))["collider"]

@@ -132,7 +132,8 @@ TEST(RigidBody, IsHeldByAPinUntilItIsLetGo) {
 
 /// A box that rises into falling cloth far faster than contact reaches keeps to its keyframes and lifts it.
 TEST(Collider, LiftsClothThatIsInItsWay) {
-  const auto file = std::filesystem::temp_directory_path() / ("lifted_" + std::to_string(::getpid()) + ".obj");
+  const auto file =
+      std::filesystem::temp_directory_path() / ("lifted_" + std::to_string(::getpid()) + ".obj");
   {
     std::ofstream out(file);
     constexpr int n = 12;
@@ -144,8 +145,8 @@ TEST(Collider, LiftsClothThatIsInItsWay) {
         out << "f " << v << " " << v + 1 << " " << v + n + 2 << " " << v + n + 1 << "\n";
       }
   }
-  Simulation simulation(build("[time]\nsteps_per_frame = 8\n[[body]]\nname = 'cloth'\nmesh = '" + file.string() +
-                              "'\nmodel = 'shell'\nmaterial = 'cotton'\n" + gravity +
+  Simulation simulation(build("[time]\nsteps_per_frame = 8\n[[body]]\nname = 'cloth'\nmesh = '" +
+                              file.string() + "'\nmodel = 'shell'\nmaterial = 'cotton'\n" + gravity +
                               "[[collider]]\nname = 'box'\nshape = 'box'\ncenter = [0, -0.3, 0]\n"
                               "size = [0.3, 0.2, 0.3]\nkeyframes = [{time = 0, translate = [0, 0, 0]}, "
                               "{time = 0.4, translate = [0, 0.4, 0]}]\n"));

@@ -8,7 +8,7 @@
 namespace muslin::test {
 
 struct ClothGrid {
-  int columns, rows;  ///< of vertices
+  int columns, rows;                  ///< of vertices
   std::vector<Vec3> positions, rest;  ///< the same to begin with
   std::vector<Vec3i> triangles;
 

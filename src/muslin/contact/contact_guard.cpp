@@ -77,8 +77,8 @@ void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end, double 
   candidates_.update(begin, end, margin);
 }
 
-/// Makes sure that all pairs are known for the way from q to q + d, and for what is pushed out of the way of held
-/// vertices: that goes about as far as they.
+/// Makes sure that all pairs are known for the way from q to q + d, and for what is pushed out of the way of
+/// held vertices: that goes about as far as they.
 void ContactGuard::cover(ConstVectors q, ConstVectors d) {
   double push = 0;
   for (std::size_t v = 0; v < held_.size(); ++v)

@@ -47,8 +47,8 @@ struct StepProblem {
   std::span<const std::uint8_t> fixed;       ///< #V
   ConstVectors targets;                      ///< #V by 3 [m], read only where fixed
   StepGuard* guard = nullptr;                ///< whom to ask before anything moves; none if null
-  /// #V by 3 [m], the same from step to step: what is near each other here moves alike. Without them no coarse
-  /// space helps to solve for the smooth part of the motion.
+  /// #V by 3 [m], the same from step to step: what is near each other here moves alike. Without them no
+  /// coarse space helps to solve for the smooth part of the motion.
   ConstVectors rest_positions = {};
 };
 
