@@ -13,18 +13,21 @@ const scene = `
 title = "Two </script> & \\"friends\\""
 [time]
 duration = 1
+steps_per_frame = 2
 [[body]]
 name = "flag"
 mesh = "${join(source, 'scenes/meshes/flag.obj')}"
 thickness = 1.0
 voxel_width = 1.0
 material = "thesis_flag"
+contact = false
 colour = [0.8, 0.1, 0.1]
 [[body]]
 name = "a napkin"
 mesh = "${join(source, 'scenes/meshes/napkin.obj')}"
 model = "shell"
 material = "cotton"
+contact = false
 scale = [8, 8, 8]
 translate = [5, -3, 4]
 colour = [0.1, 0.7, 0.2]
