@@ -18,22 +18,34 @@ constexpr double pushed_share = 1.5;
 /// Displacements of more edges than this are limited in pieces, of which there are no more than so many.
 constexpr double edges_at_once = 2;
 constexpr int most_pieces = 256;
+/// What pushes others goes this share of that at once: all that it might push has to be searched that far.
+constexpr double pushed_at_once = 0.25;
+/// Edges taken to be this many contact distances long where nothing bends.
+constexpr double edge_distances = 5;
 /// Of the gap floor in converged steps, for which contact has to hold whatever presses; fast ones rely on the
 /// limiter.
 constexpr double converged_floor = 0.01;
 /// Friction is full at this speed [m/s].
 constexpr double stick_speed = 1e-3;
 
-/// Over edges of what is not fixed, infinite without any.
-double mean_edge(const ContactSurface& surface, ConstVectors rest) {
+/// Mean length over edges of what bends.
+double mean_edge(const ContactModel& model) {
+  const ContactSurface& surface = *model.surface;
+  const auto bends = [&](int point) {
+    if (surface.body_at(point).fixed) return false;
+    const auto row = model.map->row(static_cast<std::size_t>(point));
+    return std::all_of(row.begin(), row.end(), [&](const SurfaceMap::Entry& e) {
+      return model.limits.groups.empty() || model.limits.groups[static_cast<std::size_t>(e.vertex)] < 0;
+    });
+  };
   double sum = 0;
   int count = 0;
   for (const ContactSurface::Edge& e : surface.edges()) {
-    if (surface.bodies()[static_cast<std::size_t>(surface.body_of(e[0]))].fixed) continue;
-    sum += (rest[static_cast<std::size_t>(e[0])] - rest[static_cast<std::size_t>(e[1])]).norm();
+    if (!bends(e[0])) continue;
+    sum += (model.rest[static_cast<std::size_t>(e[0])] - model.rest[static_cast<std::size_t>(e[1])]).norm();
     ++count;
   }
-  return count > 0 ? sum / count : std::numeric_limits<double>::infinity();
+  return count > 0 ? sum / count : edge_distances * model.distance;
 }
 
 StepLimits limits_of(const ContactModel& model) {
@@ -49,7 +61,9 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model)
       candidates_(model_->surface, model_->rest, model_->distance),
       limiter_(model_->map, limits_of(*model_)),
       margin_(margin_share * model_->distance),
-      longest_(std::max(edges_at_once * mean_edge(*model_->surface, model_->rest), 4 * model_->distance)),
+      edge_(mean_edge(*model_)),
+      longest_(std::max(edges_at_once * edge_, 4 * model_->distance)),
+      longest_push_(pushed_at_once * longest_),
       friction_{model_->friction, stick_speed},
       x_(model_->map->point_count()),
       to_(model_->map->point_count()) {
@@ -103,9 +117,9 @@ void ContactGuard::shorten(Vectors d) const {
   const StepLimits& limits = model_->limits;
   std::vector<double> of_group;
   for (std::size_t v = 0; v < d.size(); ++v) {
-    const double length = d[v].norm();
-    if (!(length > longest_)) continue;
-    const double factor = longest_ / length;
+    const double length = d[v].norm(), longest = held_[v] != 0 ? longest_push_ : longest_;
+    if (!(length > longest)) continue;
+    const double factor = longest / length;
     if (limits.groups.empty() || limits.groups[v] < 0) {
       d[v] *= factor;
       continue;
@@ -133,9 +147,10 @@ void ContactGuard::limit(ConstVectors q, Vectors d) {
 }
 
 void ContactGuard::advance(Vectors q, ConstVectors d) {
-  double farthest = 0;
-  for (const Vec3& step : d) farthest = std::max(farthest, step.norm());
-  const double needed = std::ceil(farthest / longest_);
+  double farthest = 0;  // in pieces
+  for (std::size_t v = 0; v < d.size(); ++v)
+    farthest = std::max(farthest, d[v].norm() / (held_[v] != 0 ? longest_push_ : longest_));
+  const double needed = std::ceil(farthest);
   const int pieces = needed < most_pieces ? std::max(1, static_cast<int>(needed)) : most_pieces;
   const std::vector<Vec3> from(q.begin(), q.end());
   piece_.resize(q.size());

@@ -42,6 +42,7 @@ class ContactGuard : public StepGuard {
   explicit ContactGuard(std::shared_ptr<const ContactModel> model);
 
   void begin(ConstVectors q, double length, std::span<const std::uint8_t> held) override;
+  double resolution() const override { return edge_; }
   void limit(ConstVectors q, Vectors d) override;
   void advance(Vectors q, ConstVectors d) override;
   const Potential& potential(ConstVectors q) override;
@@ -70,8 +71,10 @@ class ContactGuard : public StepGuard {
   std::shared_ptr<const ContactModel> model_;
   ContactCandidates candidates_;
   StepLimiter limiter_;
-  double margin_;   ///< by which boxes of candidates are wider than the motion [m]
-  double longest_;  ///< displacement that is limited in one piece [m]
+  double margin_;         ///< by which boxes of candidates are wider than the motion [m]
+  double edge_;           ///< mean length of an edge of what bends [m]
+  double longest_;        ///< displacement that is limited in one piece [m]
+  double longest_push_;   ///< the same of what pushes others along keyframes
   Friction friction_;
   std::vector<std::array<int, 2>> tangled_;
   std::vector<Vec3> start_;  ///< q where the step began

@@ -19,6 +19,10 @@ class StepGuard {
   /// vertices v for which held[v] (#V) is not 0.
   virtual void begin(ConstVectors x, double length, std::span<const std::uint8_t> held) = 0;
 
+  /// A length of the surfaces that move, an edge of a triangle or the like [m]: motions of a small share of it
+  /// are not seen.
+  virtual double resolution() const = 0;
+
   /// Changes the displacement d from x, vertex by vertex, such that the straight way to x + t d is safe for
   /// all t in [0, 1]. `x` must have been reached from where the step began by such ways only.
   virtual void limit(ConstVectors x, Vectors d) = 0;

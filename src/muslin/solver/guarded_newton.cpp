@@ -15,6 +15,10 @@ constexpr double armijo = 1e-4;
 constexpr double rounding = 1e-12;  // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-6;
 constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-3, fast_forcing = 0.05;
+/// A fast step ends early where its last motion was below the first share of the guard's resolution, and goes
+/// on, to no more than so many times its iterations, where it was above the second.
+constexpr double calm_share = 0.02, restless_share = 0.1;
+constexpr int restless_times = 2;
 
 class GuardedStep {
  public:
@@ -41,7 +45,7 @@ class GuardedStep {
     workspace_.inner.begin_step();
     StepReport report;
     const bool fast = settings_.effort == Effort::fast;
-    const int most = fast ? settings_.fast_iterations : settings_.max_iterations;
+    const int most = fast ? restless_times * settings_.fast_iterations : settings_.max_iterations;
     for (;;) {
       if (report.newton_iterations > 0 && held_back_ > 0) push_held();
       find_gradient();
@@ -55,7 +59,7 @@ class GuardedStep {
       }
       report.converged = imbalance.largest <= settings_.tolerance;
       if (report.converged) break;
-      if (report.newton_iterations == most) {
+      if (report.newton_iterations == most || (fast && is_calm(report.newton_iterations))) {
         if (!fast)
           report.failure =
               "the step is not in balance after " + std::to_string(most) + " Newton iterations under contact";
@@ -141,6 +145,13 @@ class GuardedStep {
     });
   }
 
+  /// Whether a fast step may end after so many iterations.
+  bool is_calm(int iterations) const {
+    if (iterations == 0 || (iterations < settings_.fast_iterations && held_back_ > 0)) return false;
+    const double share = iterations < settings_.fast_iterations ? calm_share : restless_share;
+    return moved_ <= share * guard_.resolution();
+  }
+
   IncrementalPotential full() const { return {with_contact_, function_.prediction(), function_.dt()}; }
 
   /// Moves x along the limited step as far as the energy falls; value_ and base_ with it.
@@ -170,6 +181,8 @@ class GuardedStep {
       if (change <= armijo * t * slope || std::abs(change) <= allowance) {
         std::copy(there.begin(), there.end(), x_.begin());
         value_ = value;
+        moved_ = 0;
+        for (const Vec3& d : d_) moved_ = std::max(moved_, t * d.norm());
         return true;
       }
       const double parabola = -0.5 * slope * t * t / (change - t * slope);
@@ -193,6 +206,7 @@ class GuardedStep {
   IncrementalPotential::Value value_;  ///< at x, without contact
   double contact_value_ = 0;
   int held_back_ = 0;
+  double moved_ = 0;  ///< by the vertex that the last iteration moved farthest [m]
   std::vector<Vec3> base_, d_;  ///< the gradient without contact; the limited step
 };
 

@@ -25,7 +25,7 @@ enum class Integrator {
 /// How much a step of implicit_euler or bdf2 is worth. Both keep what a StepGuard keeps.
 enum class Effort {
   converged,  ///< Newton's method to `tolerance`, or the step fails
-  fast,       ///< so many iterations and no more, under a guard only: for small steps
+  fast,       ///< few iterations, under a guard only: for small steps
 };
 
 struct SolverSettings {
@@ -35,7 +35,9 @@ struct SolverSettings {
   /// tolerance [m/s²].
   double tolerance = 1e-2;
   int max_iterations = 100;        ///< Newton iterations of a converged step
-  int fast_iterations = 2;         ///< Newton iterations of a fast step at most
+  /// Newton iterations of a fast step: fewer where hardly anything moves any more, up to twice as many where
+  /// much still does.
+  int fast_iterations = 2;
   double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
 };
 
