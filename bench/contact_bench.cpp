@@ -96,11 +96,14 @@ void limit_step(benchmark::State& state) {
   const Contact contact(static_cast<int>(state.range(0)));
   ContactCandidates candidates(contact.surface, contact.rest, contact.drape.distance);
   candidates.update(contact.x, contact.after(), contact.drape.distance / 4);
+  PairDistances distances(candidates);
   const StepLimiter limiter(contact.map, {});
   LimitReport report;
   for (auto _ : state) {
     std::vector<Vec3> step = contact.step;
-    report = limiter.limit(candidates, contact.x, step);
+    distances.forget();
+    distances.update(contact.x);
+    report = limiter.limit(distances, step);
     benchmark::DoNotOptimize(step);
   }
   state.counters["deflected"] = static_cast<double>(report.deflected);
@@ -112,8 +115,11 @@ void make_potential(benchmark::State& state) {
   ContactCandidates candidates(contact.surface, contact.rest, contact.drape.distance);
   candidates.update(contact.x, contact.after(), contact.drape.distance / 4);
   std::size_t pairs = 0;
+  PairDistances distances(candidates);
   for (auto _ : state) {
-    const ContactPotential w(candidates, contact.map, contact.x, {0.3, 4e-6}, contact.x);
+    distances.forget();
+    distances.update(contact.x);
+    const ContactPotential w(distances, contact.map, contact.x, {0.3, 4e-6}, contact.x);
     pairs = w.pair_count();
   }
   state.counters["pairs"] = static_cast<double>(pairs);
@@ -123,7 +129,9 @@ void contact_gradient(benchmark::State& state) {
   const Contact contact(static_cast<int>(state.range(0)));
   ContactCandidates candidates(contact.surface, contact.rest, contact.drape.distance);
   candidates.update(contact.x, contact.after(), contact.drape.distance / 4);
-  const ContactPotential w(candidates, contact.map, contact.x, {0.3, 4e-6}, contact.x);
+  PairDistances distances(candidates);
+  distances.update(contact.x);
+  const ContactPotential w(distances, contact.map, contact.x, {0.3, 4e-6}, contact.x);
   std::vector<Vec3> g(contact.x.size(), Vec3::Zero());
   for (auto _ : state) {
     w.add_gradient(contact.x, g);

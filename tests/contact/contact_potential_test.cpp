@@ -6,6 +6,7 @@
 #include <random>
 
 #include "support/cloth_grid.hpp"
+#include "support/distances_at.hpp"
 #include "support/linearized_product.hpp"
 #include "support/potential_battery.hpp"
 #include <gtest/gtest.h>
@@ -105,7 +106,7 @@ struct Scene {
     ContactCandidates candidates(surface, x, range);
     // The sheets are flat at rest, but x is as good: bodies are a twentieth of an edge apart.
     candidates.update(x, x, 0.002);
-    return ContactPotential(candidates, map, q, {friction, stick}, start);
+    return ContactPotential(test::distances_at(candidates, x), map, q, {friction, stick}, start);
   }
 };
 
@@ -195,7 +196,7 @@ TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
     q.push_back(over);
     ContactCandidates candidates(surface, q, 0.002);
     candidates.update(q, q, 0.001);
-    const ContactPotential w(candidates, map, q, {0, 1e-5}, q);
+    const ContactPotential w(test::distances_at(candidates, q), map, q, {0, 1e-5}, q);
     EXPECT_NEAR(test::gradient(w, q)[25].y(), -1, 1e-9) << over.transpose();
   }
 }
@@ -233,7 +234,7 @@ std::array<double, 2> slide(double friction, double slope) {
     const Vec3 predicted = q[0] + dt * velocity + dt * dt * gravity;
     candidates.update(q, q, 0.01);
     for (int iteration = 0; iteration < 12; ++iteration) {
-      const ContactPotential w(candidates, map, q, {friction, 4e-6}, start, slips);
+      const ContactPotential w(test::distances_at(candidates, q), map, q, {friction, 4e-6}, start, slips);
       std::vector<Mat3> blocks(2, Mat3::Zero());
       w.add_diagonal_blocks(q, blocks);
       const Vec3 residual = (q[0] - predicted) / (dt * dt) + test::gradient(w, q)[0];
@@ -292,7 +293,7 @@ struct Balls {
     map->apply(q, x);
     ContactCandidates candidates(surface, x, range);
     candidates.update(x, x, 0.002);
-    return ContactPotential(candidates, map, q, {0.5, stick}, start);
+    return ContactPotential(test::distances_at(candidates, x), map, q, {0.5, stick}, start);
   }
   /// The first ball moved by `shift` and turned about its centre by `angle` about z.
   std::vector<Vec3> moved(const Vec3& shift, double angle) const {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "support/distances_at.hpp"
 #include "support/draped_cloth.hpp"
 #include <gtest/gtest.h>
 
@@ -55,7 +56,8 @@ LimitReport limited_step(Scene& scene, ContactCandidates& candidates, const Step
   std::vector<Vec3> to = scene.q;
   for (std::size_t v = 0; v < to.size(); ++v) to[v] += dq[v];
   candidates.update(scene.points(scene.q), scene.points(to), margin);
-  const LimitReport report = limiter.limit(candidates, scene.q, dq);
+  PairDistances distances = test::distances_at(candidates, scene.points(scene.q));
+  const LimitReport report = limiter.limit(distances, dq);
   for (std::size_t v = 0; v < to.size(); ++v) scene.q[v] += dq[v];
   return report;
 }
@@ -104,7 +106,8 @@ TEST_P(ViolentSteps, NeverMakeCrumpledClothCrossItself) {
     for (std::size_t v = 0; v < before.size(); ++v) moved += (scene.q[v] - before[v]).norm();
     shortened += report.shortened;
     ASSERT_FALSE(scene.crosses()) << "step " << step;
-    ASSERT_GT(candidates.smallest_gap(scene.q), 0.0049 * scene.contact_distance) << "step " << step;
+    ASSERT_GT(test::distances_at(candidates, scene.q).smallest_gap(), 0.0049 * scene.contact_distance)
+        << "step " << step;
   }
   EXPECT_GT(moved / static_cast<double>(scene.q.size()), 0.1);  // it was violent
   EXPECT_GT(shortened, 300U);
@@ -178,7 +181,7 @@ TEST(StepLimiter, HoldsSpheresCapsulesAndPlanesOff) {
     std::vector<Vec3> dq(scene.q.size(), Vec3::Zero());
     for (std::size_t v = 0; v < static_cast<std::size_t>(n); ++v) dq[v] = Vec3(0, -0.3, 0.01);
     limited_step(scene, candidates, limiter, dq, 1e-3);
-    EXPECT_GT(candidates.smallest_gap(scene.q), 0.9e-5) << step;
+    EXPECT_GT(test::distances_at(candidates, scene.q).smallest_gap(), 0.9e-5) << step;
     const Vec3 ball = scene.q[static_cast<std::size_t>(n)];
     for (const Vec3i& t : sheet.triangles) {
       const auto at = [&](int i) { return scene.q[static_cast<std::size_t>(t[i])]; };
@@ -289,7 +292,7 @@ TEST(StepLimiter, ProtectsCarriedSurfaces) {
     for (std::size_t v = 0; v < 16; ++v) dq[v].y() += v < 8 ? 0.1 : -0.1;
     limited_step(scene, candidates, limiter, dq, 1e-2);
     ASSERT_FALSE(scene.crosses()) << step;
-    ASSERT_GT(candidates.smallest_gap(scene.points(scene.q)), 0.9e-5) << step;
+    ASSERT_GT(test::distances_at(candidates, scene.points(scene.q)).smallest_gap(), 0.9e-5) << step;
   }
 }
 

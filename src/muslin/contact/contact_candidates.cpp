@@ -126,18 +126,19 @@ ContactPair ContactCandidates::make_pair(PairKind kind, int first, int second) c
 }
 
 template <class Pair>
-void ContactCandidates::add_near(PairKind kind, std::span<const Pair> found,
-                                 std::vector<ContactPair>& out) const {
+void ContactCandidates::add_near(PairKind kind, std::span<const Pair> found, Near& out) const {
   std::vector<std::array<int, 4>> points(found.size());
-  std::vector<std::uint8_t> near(found.size());
+  std::vector<float> distances(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const auto [first, second] = found[i];
     points[i] = points_of(*surface_, kind, first, second);
   }
-  culling_.mark_near(kind, points, contact_distance_, near.data());
+  culling_.find_near(kind, points, contact_distance_, distances.data());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const auto [first, second] = found[i];
-    if (near[i] != 0 && !is_free(kind, first, second)) out.push_back(make_pair(kind, first, second));
+    if (distances[i] < 0 || is_free(kind, first, second)) continue;
+    out.pairs.push_back(make_pair(kind, first, second));
+    out.distances.push_back(distances[i]);
   }
 }
 
@@ -145,6 +146,7 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
   const std::size_t points = surface_->point_count();
   if (begin.size() != points || end.size() != points)
     throw Error(ErrorKind::usage, "contact candidates need one position for each point", "give #P positions");
+  found_at_.assign(begin.begin(), begin.end());
   lower_.resize(points);
   upper_.resize(points);
   for (std::size_t p = 0; p < points; ++p) {
@@ -155,7 +157,7 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
   culling_.set_points(*surface_, begin, lower_, upper_);
   const auto blocks = [](std::size_t count) { return (count + grain - 1) / grain; };
   const std::size_t vertex_triangle = blocks(found_.vertex_triangle.size());
-  std::vector<std::vector<ContactPair>> parts(vertex_triangle + blocks(found_.edge_edge.size()));
+  std::vector<Near> parts(vertex_triangle + blocks(found_.edge_edge.size()));
   parallel_for(parts.size(), 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       const auto block = [](const auto& all, std::size_t k) {
@@ -169,8 +171,13 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
     }
   });
   pairs_.clear();
-  for (const std::vector<ContactPair>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
+  least_distances_.clear();
+  for (const Near& part : parts) {
+    pairs_.insert(pairs_.end(), part.pairs.begin(), part.pairs.end());
+    least_distances_.insert(least_distances_.end(), part.distances.begin(), part.distances.end());
+  }
   for (std::size_t k = 0; k < surface_->planes().size(); ++k) add_near_plane(static_cast<int>(k));
+  least_distances_.resize(pairs_.size(), 0);
 }
 
 void ContactCandidates::add_near_plane(int plane) {
@@ -187,21 +194,6 @@ void ContactCandidates::add_near_plane(int plane) {
     if (surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point)))
       pairs_.push_back(make_pair(PairKind::point_plane, point, plane));
   }
-}
-
-double ContactCandidates::smallest_gap(ConstVectors x) const {
-  struct Smallest {
-    double gap = std::numeric_limits<double>::infinity();
-    Smallest operator+(const Smallest& other) const { return {std::min(gap, other.gap)}; }
-  };
-  const double gap =
-      parallel_sum(pairs_.size(), grain, Smallest{}, [&](std::size_t begin, std::size_t end) {
-        Smallest s;
-        for (std::size_t i = begin; i < end; ++i)
-          s.gap = std::min(s.gap, pair_geometry(*surface_, pairs_[i], x).distance - pairs_[i].thickness);
-        return s;
-      }).gap;
-  return gap <= contact_distance_ ? gap : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace muslin

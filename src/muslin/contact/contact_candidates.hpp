@@ -61,21 +61,25 @@ class ContactCandidates {
   std::shared_ptr<const ContactSurface> shared_surface() const { return surface_; }
   double contact_distance() const { return contact_distance_; }
   std::span<const ContactPair> pairs() const { return pairs_; }
+  /// #pairs: no more than the distance of each pair where it was found [m]; of planes 0.
+  std::span<const float> least_distances() const { return least_distances_; }
+  /// That place, #P by 3 [m]: the `begin` of the last update.
+  ConstVectors found_at() const { return found_at_; }
   /// The boxes in which the pairs are complete, #P by 3 [m].
   ConstVectors lower() const { return lower_; }
   ConstVectors upper() const { return upper_; }
-
-  /// The smallest distance less thickness of all pairs at x, if that is below the contact distance: then it
-  /// is that of the whole surface, for x within the boxes; infinite otherwise [m].
-  double smallest_gap(ConstVectors x) const;
 
  private:
   void limit_by_rest(ContactPair& pair) const;
   ContactPair make_pair(PairKind kind, int first, int second) const;
   bool is_free(PairKind kind, int first, int second) const;
+  struct Near {
+    std::vector<ContactPair> pairs;
+    std::vector<float> distances;
+  };
   /// Appends those that may come into range.
   template <class Pair>
-  void add_near(PairKind kind, std::span<const Pair> found, std::vector<ContactPair>& out) const;
+  void add_near(PairKind kind, std::span<const Pair> found, Near& out) const;
   void add_near_plane(int plane);
 
   std::shared_ptr<const ContactSurface> surface_;
@@ -83,8 +87,9 @@ class ContactCandidates {
   PairSearch search_;
   PairCulling culling_;
   FeaturePairs found_;
-  std::vector<Vec3> lower_, upper_;
+  std::vector<Vec3> found_at_, lower_, upper_;
   std::vector<ContactPair> pairs_;
+  std::vector<float> least_distances_;
   struct RestDistance {
     std::uint64_t key;
     double distance;

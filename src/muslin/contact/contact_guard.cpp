@@ -59,6 +59,7 @@ StepLimits limits_of(const ContactModel& model) {
 ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model)
     : model_(std::move(model)),
       candidates_(model_->surface, model_->rest, model_->distance),
+      distances_(candidates_),
       limiter_(model_->map, limits_of(*model_)),
       margin_(margin_share * model_->distance),
       edge_(mean_edge(*model_)),
@@ -89,6 +90,13 @@ void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end, double 
   memory_.end.assign(end.begin(), end.end());
   memory_.margin = margin;
   candidates_.update(begin, end, margin);
+  distances_.forget();
+}
+
+/// Brings the distances to q.
+void ContactGuard::measure(ConstVectors q) {
+  model_->map->apply(q, x_);
+  distances_.update(x_);
 }
 
 /// Makes sure that all pairs are known for the way from q to q + d, and for what is pushed out of the way of
@@ -140,7 +148,8 @@ void ContactGuard::limit(ConstVectors q, Vectors d) {
   shorten(d);
   cover(q, d);
   const Stopwatch watch(counts_.limit_seconds);
-  const LimitReport report = limiter_.limit(candidates_, q, d, held_);
+  measure(q);
+  const LimitReport report = limiter_.limit(distances_, d, held_);
   ++counts_.limits;
   counts_.deflected += report.deflected;
   counts_.shortened += report.shortened;
@@ -172,14 +181,15 @@ const Potential& ContactGuard::potential(ConstVectors q) {
     cover(q, piece_);
   }
   const Stopwatch watch(counts_.potential_seconds);
-  potential_.emplace(candidates_, model_->map, q, friction_, start_, memory_.slips);
+  measure(q);
+  potential_.emplace(distances_, model_->map, q, friction_, start_, memory_.slips);
   return *potential_;
 }
 
 void ContactGuard::end(ConstVectors q) {
   memory_.slips = potential_->slips(q);
-  model_->map->apply(q, x_);
-  memory_.smallest_gap = candidates_.smallest_gap(x_);
+  measure(q);
+  memory_.smallest_gap = distances_.smallest_gap();
   if (!tangled_.empty()) leave_tangled(q);
 }
 
@@ -205,7 +215,7 @@ void ContactGuard::leave_tangled(ConstVectors q) {
   if (now == tangled_) return;
   tangled_ = std::move(now);
   candidates_.leave_free(tangled_);
-  if (!memory_.begin.empty()) candidates_.update(memory_.begin, memory_.end, memory_.margin);
+  find_again();
 }
 
 void ContactGuard::restore(ContactMemory memory) {
@@ -213,7 +223,13 @@ void ContactGuard::restore(ContactMemory memory) {
   if (memory.begin.size() != memory.end.size() || (!memory.begin.empty() && memory.begin.size() != points))
     throw Error(ErrorKind::input, "the checkpoint's contact belongs to other surfaces", "start the run anew");
   memory_ = std::move(memory);
-  if (!memory_.begin.empty()) candidates_.update(memory_.begin, memory_.end, memory_.margin);
+  find_again();
+}
+
+void ContactGuard::find_again() {
+  if (memory_.begin.empty()) return;
+  candidates_.update(memory_.begin, memory_.end, memory_.margin);
+  distances_.forget();
 }
 
 }  // namespace muslin

@@ -65,16 +65,20 @@ class ContactGuard : public StepGuard {
  private:
   std::vector<std::array<int, 2>> crossing(ConstVectors q);
   void find_candidates(ConstVectors begin, ConstVectors end, double margin);
+  /// As they were found last.
+  void find_again();
+  void measure(ConstVectors q);
   void cover(ConstVectors q, ConstVectors d);
   void shorten(Vectors d) const;
 
   std::shared_ptr<const ContactModel> model_;
   ContactCandidates candidates_;
+  PairDistances distances_;
   StepLimiter limiter_;
-  double margin_;         ///< by which boxes of candidates are wider than the motion [m]
-  double edge_;           ///< mean length of an edge of what bends [m]
-  double longest_;        ///< displacement that is limited in one piece [m]
-  double longest_push_;   ///< the same of what pushes others along keyframes
+  double margin_;        ///< by which boxes of candidates are wider than the motion [m]
+  double edge_;          ///< mean length of an edge of what bends [m]
+  double longest_;       ///< displacement that is limited in one piece [m]
+  double longest_push_;  ///< the same of what pushes others along keyframes
   Friction friction_;
   std::vector<std::array<int, 2>> tangled_;
   std::vector<Vec3> start_;  ///< q where the step began

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t grain = 512;
 /// Pairs this many ranges apart are taken along: they may come into range in the iteration.
-constexpr double ranges_ahead = 1.5;
+constexpr double ranges_ahead = PairDistances::ranges_known;
 /// Edges fade out towards their ends over this share of the range, where the vertex there is in range as
 /// well, but of no more than this share of their length; and below this squared sine of their angle.
 constexpr double end_ranges = 0.5, end_share = 0.05, parallel_share = 1e-3;
@@ -83,25 +83,29 @@ Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - normal.dot(v) * 
 
 }  // namespace
 
-ContactPotential::ContactPotential(const ContactCandidates& candidates, std::shared_ptr<const SurfaceMap> map,
+ContactPotential::ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map,
                                    ConstVectors lagged, Friction friction, ConstVectors start,
                                    std::span<const PairSlip> slips)
-    : surface_(candidates.shared_surface()), map_(std::move(map)), friction_(friction) {
+    : surface_(distances.candidates().shared_surface()),
+      map_(std::move(map)),
+      friction_(friction),
+      lagged_(distances.points().begin(), distances.points().end()) {
   if (!(friction.coefficient >= 0) || !(friction.stick_length > 0))
     throw Error(ErrorKind::usage, "a friction coefficient is negative",
                 "give 0 or more, and a stick length above 0");
   if (lagged.size() != map_->vertex_count() || start.size() != lagged.size() ||
-      surface_->point_count() != map_->point_count())
+      distances.points().size() != map_->point_count())
     throw Error(ErrorKind::usage, "a contact potential needs one position for each vertex",
                 "give #V positions");
-  std::vector<Vec3> buffer, start_buffer;
-  const ConstVectors x = points(lagged, buffer), x_start = points(start, start_buffer);
-  const std::span<const ContactPair> all = candidates.pairs();
+  std::vector<Vec3> start_buffer;
+  const ConstVectors x = distances.points(), x_start = points(start, start_buffer);
+  const std::span<const ContactPair> all = distances.candidates().pairs();
   std::vector<std::vector<Pair>> parts((all.size() + grain - 1) / grain);
   std::vector<std::vector<Carried>> carried_parts(parts.size());
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const PairGeometry at = pair_geometry(*surface_, all[i], x);
+      if (!distances.is_known(i)) continue;
+      const PairGeometry& at = distances[i];
       const double gap = at.distance - all[i].thickness;
       if (gap >= ranges_ahead * all[i].range || !(gap > 0)) continue;
       const double share = contact_share(*surface_, all[i], at, x);
@@ -109,6 +113,7 @@ ContactPotential::ContactPotential(const ContactCandidates& candidates, std::sha
       Pair pair;
       pair.pair = all[i];
       pair.stiffness = surface_->stiffness(all[i].points[0], all[i].points[last_point(all[i])]) * share;
+      pair.lagged = at;
       pair.normal = at.normal;
       pair.weights = at.weights;
       pair.begin.setZero();
@@ -153,6 +158,20 @@ ContactPotential::ContactPotential(const ContactCandidates& candidates, std::sha
     }
   }
 }
+
+class ContactPotential::Geometries {
+ public:
+  Geometries(const ContactPotential& w, ConstVectors x)
+      : surface_(*w.surface_), x_(x), lagged_(std::equal(x.begin(), x.end(), w.lagged_.begin())) {}
+  PairGeometry operator()(const Pair& pair) const {
+    return lagged_ ? pair.lagged : pair_geometry(surface_, pair.pair, x_);
+  }
+
+ private:
+  const ContactSurface& surface_;
+  ConstVectors x_;
+  bool lagged_;
+};
 
 ConstVectors ContactPotential::points(ConstVectors q, std::vector<Vec3>& buffer) const {
   if (map_->is_identity()) return q;
@@ -210,11 +229,12 @@ Vec3 ContactPotential::slip(const Pair& pair, ConstVectors x, ConstVectors q) co
 ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
   std::vector<Vec3> buffer;
   const ConstVectors x = points(q, buffer);
+  const Geometries geometry(*this, x);
   return parallel_sum(pairs_.size(), grain, Parts{}, [&](std::size_t begin, std::size_t end) {
     Parts sum;
     for (std::size_t i = begin; i < end; ++i) {
       const Pair& pair = pairs_[i];
-      const double gap = pair_geometry(*surface_, pair.pair, x).distance - pair.pair.thickness;
+      const double gap = geometry(pair).distance - pair.pair.thickness;
       sum.pressed += pair.stiffness * contact_law(gap, pair.pair.range).value;
       if (pair.friction > 0)
         sum.rubbed += pair.friction * friction_law(slip(pair, x, q).norm(), friction_.stick_length).value;
@@ -231,11 +251,12 @@ double ContactPotential::value(ConstVectors q) const {
 void ContactPotential::add_gradient(ConstVectors q, Vectors g) const {
   std::vector<Vec3> buffer;
   const ConstVectors x = points(q, buffer);
+  const Geometries geometry(*this, x);
   std::vector<Vec3> forces(4 * pairs_.size()), rubs(carried_.size());
   parallel_for(pairs_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Pair& pair = pairs_[i];
-      const PairGeometry at = pair_geometry(*surface_, pair.pair, x);
+      const PairGeometry at = geometry(pair);
       const double slope =
           pair.stiffness * contact_law(at.distance - pair.pair.thickness, pair.pair.range).slope;
       Vec3 rub = Vec3::Zero();
@@ -274,12 +295,13 @@ class ContactPotential::Hessian : public ContactHessian {
   static std::vector<ContactRow> rows(const ContactPotential& w, ConstVectors q) {
     std::vector<Vec3> buffer;
     const ConstVectors x = w.points(q, buffer);
+    const Geometries geometry(w, x);
     const std::size_t count = w.pairs_.size();
     std::vector<ContactRow> all(2 * count);  // normal and friction of each pair
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Pair& pair = w.pairs_[i];
-        const PairGeometry at = pair_geometry(*w.surface_, pair.pair, x);
+        const PairGeometry at = geometry(pair);
         const double curvature =
             pair.stiffness * contact_law(at.distance - pair.pair.thickness, pair.pair.range).curvature;
         all[2 * i] = {pair.pair.points, at.weights, at.normal, curvature, 0, {}};

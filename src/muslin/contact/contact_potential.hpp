@@ -24,7 +24,7 @@
 #include <span>
 #include <vector>
 
-#include "muslin/contact/contact_candidates.hpp"
+#include "muslin/contact/pair_distances.hpp"
 #include "muslin/contact/surface_map.hpp"
 #include "muslin/potential/potential.hpp"
 
@@ -43,13 +43,12 @@ struct PairSlip {
 
 class ContactPotential : public Potential {
  public:
-  /// For q near `lagged` (#V by 3, [m]), within the boxes of the candidates. `start` (#V by 3, [m]) are the
-  /// positions at the beginning of the step, `slips` those of the step before, by ascending key. Pairs
-  /// without a gap at `lagged` are left free. Errors: usage, if a coefficient is negative or sizes do not
-  /// fit.
-  ContactPotential(const ContactCandidates& candidates, std::shared_ptr<const SurfaceMap> map,
-                   ConstVectors lagged, Friction friction, ConstVectors start,
-                   std::span<const PairSlip> slips = {});
+  /// For q near `lagged` (#V by 3, [m]), within the boxes of the candidates; `distances` are those at
+  /// J `lagged`. `start` (#V by 3, [m]) are the positions at the beginning of the step, `slips` those of the
+  /// step before, by ascending key. Pairs without a gap at `lagged` are left free. Errors: usage, if a
+  /// coefficient is negative or sizes do not fit.
+  ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
+                   Friction friction, ConstVectors start, std::span<const PairSlip> slips = {});
 
   double value(ConstVectors q) const override;
   void add_gradient(ConstVectors q, Vectors g) const override;
@@ -76,6 +75,7 @@ class ContactPotential : public Potential {
  private:
   struct Pair {
     ContactPair pair;
+    PairGeometry lagged;              ///< where the potential was made
     double stiffness = 0;             ///< k w
     double friction = 0;              ///< μ λ, 0 if out of contact [N]
     Vec3 normal;                      ///< of friction
@@ -93,6 +93,8 @@ class ContactPotential : public Potential {
 
   /// Positions of the surface points: q itself or `buffer`, filled.
   ConstVectors points(ConstVectors q, std::vector<Vec3>& buffer) const;
+  /// Pairs at x; asked for most often where their geometry was lagged, and then known.
+  class Geometries;
   void carry(Pair& pair, const PairGeometry& at, ConstVectors x, ConstVectors q, Carried& carried) const;
   std::span<const SurfaceMap::Entry> carried(const Pair& pair) const;
   Vec3 relative(const Pair& pair, ConstVectors x, ConstVectors q) const;
@@ -101,6 +103,7 @@ class ContactPotential : public Potential {
   std::shared_ptr<const ContactSurface> surface_;
   std::shared_ptr<const SurfaceMap> map_;
   Friction friction_;
+  std::vector<Vec3> lagged_;  ///< points where the potential was made
   std::vector<Pair> pairs_;
   std::vector<Carried> carried_;
   // The pairs at each point: 4 · pair + place, by point.

@@ -1,6 +1,7 @@
 #include "muslin/contact/pair_culling.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "muslin/contact/feature_lanes.hpp"
 #include "muslin/core/parallel.hpp"
@@ -107,9 +108,24 @@ void PairCulling::set_points(const ContactSurface& surface, ConstVectors at, Con
 
 namespace {
 
-/// One group of eight pairs: bits of those that may come near. `get(i, l)` is point i of pair l.
+/// The extent of four points along n, of which the first are of feature A: min n·a − max n·b.
+template <PairKind kind>
+MUSLIN_INLINE Float8 separation(const Lanes3& n, const Lanes3* x, const Float8* half) {
+  constexpr int size_a = first_feature_size(kind);
+  Float8 a = dot(n, x[0]) - half[0], b = dot(n, x[3]) + half[3];
+  for (int i = 1; i < 3; ++i) {
+    if (i < size_a) {
+      a = smaller(a, dot(n, x[i]) - half[i]);
+    } else {
+      b = larger(b, dot(n, x[i]) + half[i]);
+    }
+  }
+  return a - b;
+}
+
+/// One group of eight pairs, whose point i is corners[i]: least distances, negative if they cannot come near.
 template <PairKind kind, class Point>
-MUSLIN_INLINE LaneBits near_lanes(const Point* const (*corners)[lane_count], float reach, float rounding) {
+MUSLIN_INLINE Float8 near_lanes(const Point* const (*corners)[lane_count], float reach, float rounding) {
   Lanes3 at[4], middle[4], half[4];
   Float8 radius[2];
   for (int i = 0; i < 4; ++i) {
@@ -129,22 +145,21 @@ MUSLIN_INLINE LaneBits near_lanes(const Point* const (*corners)[lane_count], flo
     n = edge_edge(at);
   }
   const Lanes3 extent = {magnitude(n.x), magnitude(n.y), magnitude(n.z)};
-  constexpr int size_a = first_feature_size(kind);
-  Float8 a = dot(n, middle[0]) - dot(extent, half[0]), b = dot(n, middle[3]) + dot(extent, half[3]);
-  for (int i = 1; i < 3; ++i) {
-    if (i < size_a) {
-      a = smaller(a, dot(n, middle[i]) - dot(extent, half[i]));
-    } else {
-      b = larger(b, dot(n, middle[i]) + dot(extent, half[i]));
-    }
-  }
-  const Float8 zero = {}, gap = a - b, r = radius[0] + radius[1] + (reach + rounding);
-  return as_bits(~((gap > zero) & (gap * gap > r * r * dot(n, n))));
+  const Float8 zero = {}, none[4] = {};
+  Float8 width[4];
+  for (int i = 0; i < 4; ++i) width[i] = dot(extent, half[i]);
+  const Float8 gap = separation<kind>(n, middle, width), r = radius[0] + radius[1] + (reach + rounding);
+  const Float8 square = dot(n, n);
+  const Int8 far = (gap > zero) & (gap * gap > r * r * square);
+  Float8 length = zero;
+  for (int l = 0; l < lane_count; ++l) length[l] = std::sqrt(square[l]);
+  const Float8 apart = separation<kind>(n, at, none) / larger(length, zero + tiny) - rounding;
+  return far ? zero - 1 : larger(apart, zero);
 }
 
 template <PairKind kind, class Point>
-MUSLIN_INLINE void mark_lanes(const Point* points, const std::array<int, 4>* pairs, std::size_t count,
-                              float reach, float rounding, std::uint8_t* keep) {
+MUSLIN_INLINE void find_lanes(const Point* points, const std::array<int, 4>* pairs, std::size_t count,
+                              float reach, float rounding, float* distance) {
   for (std::size_t first = 0; first < count; first += lane_count) {
     const auto used = static_cast<int>(std::min<std::size_t>(lane_count, count - first));
     const Point* corners[4][lane_count];
@@ -152,33 +167,32 @@ MUSLIN_INLINE void mark_lanes(const Point* points, const std::array<int, 4>* pai
       const std::array<int, 4>& pair = pairs[first + static_cast<std::size_t>(std::min(l, used - 1))];
       for (std::size_t i = 0; i < 4; ++i) corners[i][l] = points + pair[i];
     }
-    const LaneBits bits = near_lanes<kind>(corners, reach, rounding);
-    for (int l = 0; l < used; ++l)
-      keep[first + static_cast<std::size_t>(l)] = static_cast<std::uint8_t>(bits >> (8 * l) & 1);
+    const Float8 least = near_lanes<kind>(corners, reach, rounding);
+    for (int l = 0; l < used; ++l) distance[first + static_cast<std::size_t>(l)] = least[l];
   }
 }
 
 template <class Point>
-MUSLIN_VECTOR_CODE void mark_vertex_triangle(const Point* points, const std::array<int, 4>* pairs,
+MUSLIN_VECTOR_CODE void find_vertex_triangle(const Point* points, const std::array<int, 4>* pairs,
                                              std::size_t count, float reach, float rounding,
-                                             std::uint8_t* keep) {
-  mark_lanes<PairKind::vertex_triangle>(points, pairs, count, reach, rounding, keep);
+                                             float* distance) {
+  find_lanes<PairKind::vertex_triangle>(points, pairs, count, reach, rounding, distance);
 }
 template <class Point>
-MUSLIN_VECTOR_CODE void mark_edge_edge(const Point* points, const std::array<int, 4>* pairs,
-                                       std::size_t count, float reach, float rounding, std::uint8_t* keep) {
-  mark_lanes<PairKind::edge_edge>(points, pairs, count, reach, rounding, keep);
+MUSLIN_VECTOR_CODE void find_edge_edge(const Point* points, const std::array<int, 4>* pairs,
+                                       std::size_t count, float reach, float rounding, float* distance) {
+  find_lanes<PairKind::edge_edge>(points, pairs, count, reach, rounding, distance);
 }
 
 }  // namespace
 
-void PairCulling::mark_near(PairKind kind, std::span<const std::array<int, 4>> pairs, double reach,
-                            std::uint8_t* keep) const {
+void PairCulling::find_near(PairKind kind, std::span<const std::array<int, 4>> pairs, double reach,
+                            float* distance) const {
   const auto r = static_cast<float>(reach * (1 + 1e-6));
   if (kind == PairKind::vertex_triangle) {
-    mark_vertex_triangle(points_.data(), pairs.data(), pairs.size(), r, rounding_, keep);
+    find_vertex_triangle(points_.data(), pairs.data(), pairs.size(), r, rounding_, distance);
   } else {
-    mark_edge_edge(points_.data(), pairs.data(), pairs.size(), r, rounding_, keep);
+    find_edge_edge(points_.data(), pairs.data(), pairs.size(), r, rounding_, distance);
   }
 }
 

@@ -19,10 +19,11 @@ class PairCulling {
   /// Each point in its box lower … upper (#P by 3, [m]); planes are laid across the closest points at `at`.
   void set_points(const ContactSurface& surface, ConstVectors at, ConstVectors lower, ConstVectors upper);
 
-  /// keep[i] = 1 if pair i, given by its four points, may come within radius + radius + `reach` [m], else 0.
-  /// `kind` is vertex_triangle or edge_edge.
-  void mark_near(PairKind kind, std::span<const std::array<int, 4>> pairs, double reach,
-                 std::uint8_t* keep) const;
+  /// For pair i, given by its four points: distance[i] is negative unless it may come within radius + radius
+  /// + `reach` [m]; if it may, its features are at least distance[i] apart at `at` [m]. `kind` is
+  /// vertex_triangle or edge_edge.
+  void find_near(PairKind kind, std::span<const std::array<int, 4>> pairs, double reach,
+                 float* distance) const;
 
  private:
   struct Point {

@@ -42,29 +42,24 @@ struct StepLimiter::Work {
   std::span<const std::uint8_t> held;
   const ContactCandidates& candidates;
   std::span<const ContactPair> pairs;
-  std::vector<Vec3> x, u;              ///< points and their steps
-  std::vector<PairGeometry> geometry;  ///< of the pairs at x
-  std::vector<std::uint8_t> moved;     ///< points whose step has changed since the pairs were last judged
-  std::vector<double> factors;         ///< how much of their step pairs may take, 1 for nearly all
+  PairDistances& start;             ///< of the pairs at x
+  ConstVectors x;                   ///< points
+  std::vector<Vec3> u;              ///< their steps
+  std::vector<std::uint8_t> moved;  ///< points whose step has changed since the pairs were last judged
+  std::vector<double> factors;      ///< how much of their step pairs may take, 1 for nearly all
 
   Work(const SurfaceMap& map_, const StepLimits& limits_, std::span<const std::uint8_t> held_,
-       const ContactCandidates& candidates_, ConstVectors q)
+       PairDistances& start_)
       : map(map_),
         limits(limits_),
         held(held_),
-        candidates(candidates_),
-        pairs(candidates_.pairs()),
-        x(map_.point_count()),
+        candidates(start_.candidates()),
+        pairs(candidates.pairs()),
+        start(start_),
+        x(start_.points()),
         u(map_.point_count()),
-        geometry(pairs.size()),
         moved(map_.point_count(), 1),
-        factors(pairs.size(), 1) {
-    map.apply(q, x);
-    parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        geometry[i] = pair_geometry(candidates.surface(), pairs[i], x);
-    });
-  }
+        factors(pairs.size(), 1) {}
 
   bool is_prescribed(int point) const {
     if (held.empty()) return false;
@@ -80,35 +75,47 @@ struct StepLimiter::Work {
     return u[static_cast<std::size_t>(pair.points[static_cast<std::size_t>(i)])];
   }
 
-  /// How much of its step a pair may take.
-  double safe_factor(const ContactPair& pair, const PairGeometry& at) const {
-    if (at.distance <= 0) return 1;
+  /// How close a pair that is `distance` apart may come.
+  double required_distance(const ContactPair& pair, double distance) const {
     // What is closer than the floor, or than its thickness, comes no closer.
-    const double gap = at.distance - pair.thickness;
-    const double required =
-        gap > 0 ? pair.thickness + std::min(limits.gap_floor, gap * (1 - 1e-6)) : at.distance * (1 - 1e-6);
+    const double gap = distance - pair.thickness;
+    return gap > 0 ? pair.thickness + std::min(limits.gap_floor, gap * (1 - 1e-6)) : distance * (1 - 1e-6);
+  }
+
+  /// How much of its step pair i may take.
+  double safe_factor(std::size_t i) const {
+    const ContactPair& pair = pairs[i];
     if (pair.kind == PairKind::point_plane) {
+      const PairGeometry& at = start[i];
+      if (at.distance <= 0) return 1;
       const double approach = at.normal.dot(step(pair, 1) - step(pair, 0));
-      return approach <= at.distance - required ? 1 : (at.distance - required) / approach;
+      const double slack = at.distance - required_distance(pair, at.distance);
+      return approach <= slack ? 1 : slack / approach;
     }
     // Nothing moves far enough to matter, for nearly all pairs.
-    const double slack = at.distance - required;
     const int size_a = first_feature_size(pair.kind);
     double fastest = 0;
-    for (int i = 0; i < size_a; ++i)
+    for (int k = 0; k < size_a; ++k)
       for (int j = size_a; j < 4; ++j)
-        fastest = std::max(fastest, (step(pair, i) - step(pair, j)).squaredNorm());
-    if (fastest <= 0.999 * slack * slack) return 1;
+        fastest = std::max(fastest, (step(pair, k) - step(pair, j)).squaredNorm());
+    const auto is_far = [&](double distance) {
+      const double slack = distance - required_distance(pair, distance);
+      return distance > 0 && fastest <= 0.999 * slack * slack;
+    };
+    if (is_far(start[i].distance)) return 1;
+    const PairGeometry& at = start.find(i);
+    if (at.distance <= 0 || is_far(at.distance)) return 1;
+    const double required = required_distance(pair, at.distance);
     std::array<Vec3, 4> from, by;
-    for (std::size_t i = 0; i < 4; ++i) {
-      from[i] = x[static_cast<std::size_t>(pair.points[i])];
-      by[i] = u[static_cast<std::size_t>(pair.points[i])];
+    for (std::size_t k = 0; k < 4; ++k) {
+      from[k] = x[static_cast<std::size_t>(pair.points[k])];
+      by[k] = u[static_cast<std::size_t>(pair.points[k])];
     }
     return safe_fraction(pair.kind, from, by, required, limits.gap_floor / 2);
   }
 
-  PairGeometry geometry_at(const ContactPair& pair, const PairGeometry& start, double time) const {
-    if (pair.kind == PairKind::point_plane) return start;
+  PairGeometry geometry_at(const ContactPair& pair, const PairGeometry& before_step, double time) const {
+    if (pair.kind == PairKind::point_plane) return before_step;
     std::array<Vec3, 4> p;
     for (int i = 0; i < 4; ++i) p[static_cast<std::size_t>(i)] = position(pair, i) + time * step(pair, i);
     const ClosestPoints c = closest_points(pair.kind, p);
@@ -132,9 +139,9 @@ struct StepLimiter::Work {
   }
 
   /// For a pair that comes too close during the step: takes the approach along the normal they then have.
-  void restrict_pair(const ContactPair& pair, const PairGeometry& start, double factor,
+  void restrict_pair(const ContactPair& pair, const PairGeometry& before_step, double factor,
                      std::vector<HalfSpace>& out) const {
-    const PairGeometry at = geometry_at(pair, start, factor);
+    const PairGeometry at = geometry_at(pair, before_step, factor);
     const int size_a = first_feature_size(pair.kind), count = pair.point_count();
     double approach_a = 0, approach_b = 0, before = 0;
     for (int i = 0; i < count; ++i) {
@@ -175,7 +182,7 @@ struct StepLimiter::Work {
         bool look = false;
         for (int k = 0; k < pair.point_count(); ++k)
           look |= moved[static_cast<std::size_t>(pair.points[static_cast<std::size_t>(k)])] != 0;
-        if (look) factors[i] = safe_factor(pair, geometry[i]);
+        if (look) factors[i] = safe_factor(i);
         if (factors[i] < 1) found[begin / grain] = 1;
       }
     });
@@ -195,7 +202,7 @@ struct StepLimiter::Work {
     parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (factors[i] < 1 && chosen(pairs[i].kind))
-          restrict_pair(pairs[i], geometry[i], factors[i], parts[begin / grain]);
+          restrict_pair(pairs[i], start[i], factors[i], parts[begin / grain]);
       }
     });
     // By vertex, in the order of the pairs.
@@ -323,15 +330,13 @@ StepLimiter::StepLimiter(std::shared_ptr<const SurfaceMap> map, StepLimits limit
     throw Error(ErrorKind::usage, "a step limiter needs one entry for each vertex", "give #V or none");
 }
 
-LimitReport StepLimiter::limit(const ContactCandidates& candidates, ConstVectors q, Vectors dq,
-                               std::span<const std::uint8_t> held) const {
+LimitReport StepLimiter::limit(PairDistances& at, Vectors dq, std::span<const std::uint8_t> held) const {
   if (held.empty()) held = limits_.prescribed;
-  if (q.size() != map_->vertex_count() || dq.size() != q.size() ||
-      candidates.surface().point_count() != map_->point_count())
-    throw Error(ErrorKind::usage, "a step limiter needs one position for each vertex", "give #V positions");
+  if (dq.size() != map_->vertex_count() || at.points().size() != map_->point_count())
+    throw Error(ErrorKind::usage, "a step limiter needs one step for each vertex", "give #V steps");
   LimitReport report;
-  Work work(*map_, limits_, held, candidates, q);
-  std::vector<std::uint8_t> deflected(q.size(), 0);
+  Work work(*map_, limits_, held, at);
+  std::vector<std::uint8_t> deflected(dq.size(), 0);
   // Vertices first: what slides over a sheet would else be held by the edges that it passes.
   for (int round = 0; round < deflections && work.judge(dq); ++round) {
     const auto chosen = [round](PairKind kind) {

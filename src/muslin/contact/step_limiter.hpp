@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "muslin/contact/contact_candidates.hpp"
+#include "muslin/contact/pair_distances.hpp"
 #include "muslin/contact/surface_map.hpp"
 #include "muslin/core/vectors.hpp"
 
@@ -47,10 +47,10 @@ class StepLimiter {
 
   /// Changes the step `dq` (#V by 3, [m]) from q such that no pair of the candidates comes closer than its
   /// thickness + gap floor, or, if it is closer than that at q, any closer, all along the straight way to
-  /// q + dq. Points J q must lie in the boxes of the candidates. Pairs at distance zero are left free.
-  /// `held`, #V or none: vertices that others give way to in this step, instead of those prescribed.
-  LimitReport limit(const ContactCandidates& candidates, ConstVectors q, Vectors dq,
-                    std::span<const std::uint8_t> held = {}) const;
+  /// q + dq. `at` are the distances at J q, which must lie in the boxes of the candidates; what is missing
+  /// there is found. Pairs at distance zero are left free. `held`, #V or none: vertices that others give way
+  /// to in this step, instead of those prescribed.
+  LimitReport limit(PairDistances& at, Vectors dq, std::span<const std::uint8_t> held = {}) const;
 
  private:
   struct Work;
