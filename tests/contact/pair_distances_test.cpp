@@ -73,7 +73,7 @@ TEST(PairDistances, FindWhatTheyDidNotKnow) {
 
 TEST(PairDistances, FollowThePointsAndTheCandidates) {
   Crumpled cloth(test::draped_cloth(12));
-  cloth.candidates.update(cloth.x, cloth.x, 1e-3);
+  cloth.candidates.update(cloth.x, cloth.x, 0.05);
   PairDistances distances = test::distances_at(cloth.candidates, cloth.x);
   const auto closest = [&] {
     double least = 1;
@@ -86,7 +86,7 @@ TEST(PairDistances, FollowThePointsAndTheCandidates) {
   for (Vec3& p : larger) p *= 1.1;
   distances.update(larger);
   EXPECT_NE(closest(), before);
-  cloth.candidates.update(larger, larger, 2e-3);
+  cloth.candidates.update(larger, larger, 0.06);
   distances.forget();
   distances.update(larger);
   for (std::size_t i = 0; i < cloth.candidates.pairs().size(); ++i)
