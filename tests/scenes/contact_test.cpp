@@ -197,6 +197,9 @@ TEST(CurtainWalk, GivesWay) {
   const double before = farthest();
   ASSERT_TRUE(run.until(1.25));
   EXPECT_GT(farthest(), before + 0.1);
+  ASSERT_TRUE(run.until(2.2));
+  EXPECT_LT(run.simulation().diagnostics().max_stretch, 1.25);
+  EXPECT_EQ(run.simulation().diagnostics().held_back, 0) << "vertices of the walker are caught";
   EXPECT_TRUE(run.held_are_still());
 }
 

@@ -19,7 +19,7 @@ constexpr double pushed_share = 1.5;
 constexpr double edges_at_once = 2;
 constexpr int most_pieces = 256;
 /// What pushes others goes this share of that at once: all that it might push has to be searched that far.
-constexpr double pushed_at_once = 0.25;
+constexpr double pushed_at_once = 0.125;
 /// Edges taken to be this many contact distances long where nothing bends.
 constexpr double edge_distances = 5;
 /// Of the gap floor in converged steps, for which contact has to hold whatever presses; fast ones rely on the

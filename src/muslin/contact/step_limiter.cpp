@@ -19,8 +19,9 @@ constexpr double least_weight = 0.01;
 /// floor, how many floors. Less would press surfaces that meet at speed so close that their contact becomes
 /// too stiff for few iterations; but what pushes others along keyframes needs room to go on.
 constexpr double kept_share = 0.5, kept_before_pushing = 0.2, kept_floors = 1.5;
-/// Rounds of deflection: vertices against triangles, edges against edges, then both.
-constexpr int deflections = 6;
+/// Rounds of deflection at most: vertices against triangles, edges against edges, then both. Each carries a
+/// push on by a layer.
+constexpr int deflections = 40;
 /// The share of its safe way that a pair is given, so that it keeps some gap for the next step.
 constexpr double given_share = 0.9;
 /// Rounds after which shortening is made stronger, and after which it stops vertices altogether, so that it

@@ -206,7 +206,7 @@ class GuardedStep {
   IncrementalPotential::Value value_;  ///< at x, without contact
   double contact_value_ = 0;
   int held_back_ = 0;
-  double moved_ = 0;  ///< by the vertex that the last iteration moved farthest [m]
+  double moved_ = 0;            ///< by the vertex that the last iteration moved farthest [m]
   std::vector<Vec3> base_, d_;  ///< the gradient without contact; the limited step
 };
 
