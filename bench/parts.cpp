@@ -9,15 +9,15 @@ namespace muslin::bench {
 namespace {
 
 /// Bytes a vertex and iteration of conjugate gradients on a lattice larger than the caches, by count. For
-/// each position, backwards: r (12, float), x and p updated (48), e and g written (24), M and A − D read
-/// (48), t written (12); forwards: e and g read (24), r updated (24), M read (24), w written (12). For each
-/// block of 16 couplings, in either sweep: 128 of coefficients, a unit, and a Block or a Link.
+/// each position, backwards: r read (12, float), x and p updated (48), M and A − D read (32 and a unit a
+/// group), c and t written (24); forwards: c and t read (24), r updated (24), M read (16), w written (12).
+/// For each block of 16 couplings, in either sweep: 128 of coefficients, a unit, and a Block or a Link.
 double counted_bytes(const Problem& problem) {
   const CouplingPattern& pattern = *problem.springs->pattern();
   const auto positions = static_cast<double>(pattern.position_count());
   const auto blocks = static_cast<double>(pattern.block_count()),
              links = static_cast<double>(pattern.links().size());
-  return (228 * positions + blocks * (2 * 132 + sizeof(CouplingPattern::Block)) +
+  return (192.75 * positions + blocks * (2 * 132 + sizeof(CouplingPattern::Block)) +
           links * sizeof(CouplingPattern::Link)) /
          static_cast<double>(problem.masses.size());
 }

@@ -223,8 +223,10 @@ TEST(SweepKernels, AllHaveTheSameBits) {
 
   std::vector<std::vector<float>> results;
   for (const sweep_kernels::Kernels* kernels : sweep_kernels::all_kernels()) {
-    std::vector<float> identity(positions, 0), pivots(6 * positions), excess(6 * positions), m(6 * positions),
-        flat(3 * positions), vectors(15 * positions);
+    const std::size_t groups = pattern.groups().size();
+    std::vector<float> identity(positions, 0), m(6 * positions), flat(3 * positions), vectors(15 * positions),
+        units(2 * groups);
+    std::vector<std::uint32_t> packed(8 * positions);
     std::vector<std::uint16_t> free(pattern.groups().size());
     for (std::size_t i = 0; i < positions; ++i) {
       if (pattern.vertex(i) < 0) continue;
@@ -240,28 +242,29 @@ TEST(SweepKernels, AllHaveTheSameBits) {
     sweep.links = pattern.links().data();
     sweep.coefficients = couplings.coefficients();
     sweep.units = couplings.units();
-    sweep.pivots = pivots.data();
-    sweep.excess = excess.data();
+    sweep.pivots = {packed.data(), units.data()};
+    sweep.excess = {packed.data() + 4 * positions, units.data() + groups};
     sweep.flat = {flat.data(), flat.data() + positions, flat.data() + 2 * positions};
     sweep_kernels::Diagonal diagonal;
     diagonal.identity = identity.data();
     diagonal.free = free.data();
     const Floats upper = {m.data(), m.data() + positions, m.data() + 2 * positions};
     const Floats lower = upper + static_cast<std::ptrdiff_t>(3 * positions);
-    const float stiffest = kernels->factor(sweep, diagonal, upper, lower, pivots.data(), excess.data());
+    const float stiffest = kernels->factor(sweep, diagonal, upper, lower);
     float* const r = vectors.data();
-    float *const p = r + 3 * positions, *const y = p + 3 * positions, *const e = y + 3 * positions,
-                 *const g = e + 3 * positions;
+    float *const p = r + 3 * positions, *const y = p + 3 * positions, *const c = y + 3 * positions,
+                 *const further = c + 3 * positions;
+    for (std::size_t i = 0; i < 3 * positions; ++i) further[i] = static_cast<float>(i % 13) - 6.0F;
     for (std::size_t i = 0; i < 3 * positions; ++i) r[i] = static_cast<float>(i % 97) - 48.0F;
     const double rr = kernels->solve_forward(sweep, r);
-    const double curvature = kernels->direction(sweep, 0.5F, 0.25F, r, y, p, e, g);
-    const double next = kernels->residual(sweep, 0.3F, e, g, r);
+    const double curvature = kernels->direction(sweep, 0.5F, 0.25F, r, y, p, c);
+    const double next = kernels->residual(sweep, 0.3F, c, nullptr, r);
     std::vector<float> other(3 * positions);
     for (std::size_t i = 0; i < other.size(); ++i)
       if (identity[i % positions] > 0) other[i] = static_cast<float>(i % 31) - 15.0F;
     const Floats correction = {other.data(), other.data() + positions, other.data() + 2 * positions};
-    const double corrected = kernels->corrected_direction(sweep, 0.5F, 0.25F, r, y, p, e, g, correction);
-    const double last = kernels->residual_and_product(sweep, 0.1F, e, g, r, correction);
+    const double corrected = kernels->corrected_direction(sweep, 0.5F, 0.25F, r, y, p, c, correction);
+    const double last = kernels->residual_and_product(sweep, 0.1F, c, further, r, correction);
     kernels->solve_backward(sweep, 0.1F, y, p);
     std::vector<float> result = {stiffest,
                                  static_cast<float>(rr),
@@ -269,7 +272,8 @@ TEST(SweepKernels, AllHaveTheSameBits) {
                                  static_cast<float>(next),
                                  static_cast<float>(corrected),
                                  static_cast<float>(last)};
-    for (const auto* part : {&pivots, &excess, &flat, &vectors, &other})
+    for (const std::uint32_t word : packed) result.push_back(static_cast<float>(word));
+    for (const auto* part : {&units, &flat, &vectors, &other})
       result.insert(result.end(), part->begin(), part->end());
     results.push_back(std::move(result));
   }

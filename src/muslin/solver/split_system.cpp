@@ -11,11 +11,19 @@ namespace {
 
 using sweep_kernels::lanes;
 using sweep_kernels::matrix_size;
+using sweep_kernels::packed_size;
 using sweep_kernels::vector_size;
 
 constexpr std::size_t grain = 512;  // groups
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// Lanes without a coupling read what happens to be there and multiply it by zero: it must be finite, also after
+/// a solve that has overflown.
+void clear(const FloatVectors& vectors) {
+  for (float* each : {vectors.data().x, vectors.data().y, vectors.data().z})
+    std::memset(each, 0, vectors.size() * sizeof(float));
+}
 
 /// The place of position i in a vector by group: x, then y and z `lanes` further on each.
 std::size_t place(std::size_t i) { return i / lanes * vector_size + i % lanes; }
@@ -32,8 +40,8 @@ sweep_kernels::Sweep SplitSystem::sweep(const Part& part, int task) const {
   sweep.links = pattern.links().data();
   sweep.coefficients = part.couplings->coefficients();
   sweep.units = part.couplings->units();
-  sweep.pivots = pivots_.data() + matrix_size * part.first_group;
-  sweep.excess = excess_.data() + matrix_size * part.first_group;
+  sweep.pivots = {pivots_.data() + packed_size * part.first_group, pivot_units_.data() + part.first_group};
+  sweep.excess = {excess_.data() + packed_size * part.first_group, excess_units_.data() + part.first_group};
   sweep.flat = flat_.data() + static_cast<std::ptrdiff_t>(lanes * part.first_group);
   return sweep;
 }
@@ -96,10 +104,14 @@ double SplitSystem::factor(Linearization& h) {
   }
   const std::size_t positions = lanes * group_count_;
   identity_.resize(positions);
-  pivots_.resize(6 * positions);
-  excess_.resize(6 * positions);
+  for (auto* packed : {&pivots_, &excess_}) packed->resize(packed_size * group_count_);
+  for (auto* units : {&pivot_units_, &excess_units_}) units->resize(group_count_);
   rest_.resize(h.has_rest() ? 6 * positions : 0);
-  vectors_ = h.workspace(15 * positions);
+  r_ = h.workspace((h.has_rest() ? 15 : 12) * positions).data();
+  p_ = r_ + 3 * positions;
+  x_ = p_ + 3 * positions;
+  c_ = x_ + 3 * positions;
+  further_ = h.has_rest() ? c_ + 3 * positions : nullptr;
   flat_.resize(positions);
   free_.assign(group_count_, 0);
 
@@ -117,7 +129,7 @@ double SplitSystem::factor(Linearization& h) {
   });
 
   // M by position, for the neighbours: where the vectors will be.
-  float* const m = vectors_.data();
+  float* const m = r_;
   std::memset(m, 0, 6 * positions * sizeof(float));
   const Floats m_upper = {m, m + positions, m + 2 * positions};
   const Floats m_lower = {m + 3 * positions, m + 4 * positions, m + 5 * positions};
@@ -138,7 +150,7 @@ double SplitSystem::factor(Linearization& h) {
       stiffest = stiffest + parallel_sum(tasks, 1, Largest{}, [&](std::size_t t, std::size_t) {
                    return Largest{sweep_kernels::kernels().factor(
                        sweep(part, phases[phase] + static_cast<int>(t)), diagonal, m_upper + first,
-                       m_lower + first, pivots_.data() + 6 * first, excess_.data() + 6 * first)};
+                       m_lower + first)};
                  });
     }
   }
@@ -146,67 +158,58 @@ double SplitSystem::factor(Linearization& h) {
 }
 
 double SplitSystem::start(ConstVectors b, double scale) {
-  const std::size_t size = vectors_.size() / 5;
-  float* const r = vectors_.data();
   for_each_vertex(b.data(), [&](std::int64_t v, std::size_t i) {
     for (int c = 0; c < 3; ++c)
-      r[place(i) + at(c) * lanes] = v < 0 ? 0 : static_cast<float>(scale * b[at(v)][c]);
+      r_[place(i) + at(c) * lanes] = v < 0 ? 0 : static_cast<float>(scale * b[at(v)][c]);
   });
-  std::memset(r + size, 0, 2 * size * sizeof(float));
-  // Lanes without a coupling read what happens to be there and multiply it by zero: it must be finite, also
-  // after a solve that has overflown.
-  for (float* flat : {flat_.data().x, flat_.data().y, flat_.data().z})
-    std::memset(flat, 0, flat_.size() * sizeof(float));
+  std::memset(p_, 0, 2 * vector_size * group_count_ * sizeof(float));  // and x
+  clear(flat_);
   return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    return sweep_kernels::kernels().solve_forward(sweep, r + offset);
+    return sweep_kernels::kernels().solve_forward(sweep, r_ + offset);
   });
 }
 
 double SplitSystem::direction(double alpha, double beta) {
-  const std::size_t size = vectors_.size() / 5;
-  float* const r = vectors_.data();
-  float *const p = r + size, *const x = p + size, *const e = x + size, *const g = e + size;
   const double curvature = backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     return sweep_kernels::kernels().direction(sweep, static_cast<float>(alpha), static_cast<float>(beta),
-                                              r + offset, x + offset, p + offset, e + offset, g + offset);
+                                              r_ + offset, x_ + offset, p_ + offset, c_ + offset);
   });
   return h_->has_rest() ? curvature + add_rest_product() : curvature;
 }
 
 double SplitSystem::corrected_direction(double alpha, double beta) {
-  const std::size_t size = vectors_.size() / 5;
-  float* const r = vectors_.data();
-  float *const p = r + size, *const x = p + size, *const e = x + size, *const g = e + size;
   const double curvature = backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     return sweep_kernels::kernels().corrected_direction(
-        sweep, static_cast<float>(alpha), static_cast<float>(beta), r + offset, x + offset, p + offset,
-        e + offset, g + offset, other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
+        sweep, static_cast<float>(alpha), static_cast<float>(beta), r_ + offset, x_ + offset, p_ + offset,
+        c_ + offset, other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
   });
   return h_->has_rest() ? curvature + add_rest_product() : curvature;
 }
 
+double SplitSystem::residual(double alpha) {
+  return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
+    return sweep_kernels::kernels().residual(sweep, static_cast<float>(alpha), c_ + offset,
+                                             further_ ? further_ + offset : nullptr, r_ + offset);
+  });
+}
+
 double SplitSystem::residual_and_product(double alpha) {
-  const std::size_t size = vectors_.size() / 5;
-  float* const r = vectors_.data();
-  float *const e = r + 3 * size, *const g = e + size;
   return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     return sweep_kernels::kernels().residual_and_product(
-        sweep, static_cast<float>(alpha), e + offset, g + offset, r + offset,
+        sweep, static_cast<float>(alpha), c_ + offset, further_ ? further_ + offset : nullptr, r_ + offset,
         other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
   });
 }
 
 void SplitSystem::find_product() {
-  const std::size_t size = vectors_.size() / 5;
-  // As in `start`: lanes without a coupling multiply what is there by zero.
   other_.resize(flat_.size());
-  for (float* other : {other_.data().x, other_.data().y, other_.data().z})
-    std::memset(other, 0, other_.size() * sizeof(float));
-  std::memset(vectors_.data() + 3 * size, 0, 2 * size * sizeof(float));
+  clear(other_);
+  clear(flat_);
+  std::memset(c_, 0, (further_ ? 2 : 1) * vector_size * group_count_ * sizeof(float));
   residual_and_product(0);
 }
 
-/// e += K t; returns tᵀK t.
+/// further = K t; returns tᵀK t.
 double SplitSystem::add_rest_product() {
   t_.resize(h_->size());
   product_.resize(h_->size());
@@ -217,30 +220,18 @@ double SplitSystem::add_rest_product() {
     y.x[v] = y.y[v] = y.z[v] = 0;
   });
   const double curvature = h_->add_rest_product(t, y);
-  float* const e = vectors_.data() + 3 * (vectors_.size() / 5);
   for_each_vertex(y.x, [&](std::int64_t v, std::size_t i) {
-    if (v < 0) return;
-    float* const to = e + place(i);
-    to[0] += y.x[v], to[lanes] += y.y[v], to[2 * lanes] += y.z[v];
+    float* const to = further_ + place(i);
+    to[0] = v < 0 ? 0 : y.x[v];
+    to[lanes] = v < 0 ? 0 : y.y[v];
+    to[2 * lanes] = v < 0 ? 0 : y.z[v];
   });
   return curvature;
 }
 
-double SplitSystem::residual(double alpha) {
-  const std::size_t size = vectors_.size() / 5;
-  float* const r = vectors_.data();
-  const float *const e = r + 3 * size, *const g = e + size;
-  return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    return sweep_kernels::kernels().residual(sweep, static_cast<float>(alpha), e + offset, g + offset,
-                                             r + offset);
-  });
-}
-
 void SplitSystem::solution(double alpha, double scale, Vectors s) {
-  const std::size_t size = vectors_.size() / 5;
-  const float *const p = vectors_.data() + size, *const x = p + size;
   backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    sweep_kernels::kernels().solve_backward(sweep, static_cast<float>(alpha), x + offset, p + offset);
+    sweep_kernels::kernels().solve_backward(sweep, static_cast<float>(alpha), x_ + offset, p_ + offset);
     return 0.0;
   });
   const Floats t = flat_.data();
@@ -250,7 +241,8 @@ void SplitSystem::solution(double alpha, double scale, Vectors s) {
 }
 
 std::size_t SplitSystem::bytes() const {
-  return identity_.bytes() + rest_.bytes() + pivots_.bytes() + excess_.bytes() + flat_.bytes() +
+  return identity_.bytes() + rest_.bytes() + pivots_.bytes() + excess_.bytes() + pivot_units_.bytes() +
+         excess_units_.bytes() + flat_.bytes() +
          other_.bytes() + free_.capacity() * sizeof(free_[0]) + t_.bytes() + product_.bytes();
 }
 

@@ -41,7 +41,7 @@ class SplitSystem {
   /// For another preconditioner, P⁻¹ = (F Fᵀ)⁻¹ + C. `residual`, and then r = F r̂ for C: in groups of 16 x, y
   /// and z by position, valid until the next direction.
   double residual_and_product(double alpha);
-  const float* product() const { return vectors_.data() + 3 * (vectors_.size() / 5); }
+  const float* product() const { return c_; }
   /// C r, by position, to be written before the next `corrected_direction`: p̂ = r̂ + Fᵀ C r + beta p̂.
   Floats correction() const { return other_.data(); }
   double corrected_direction(double alpha, double beta);
@@ -71,9 +71,12 @@ class SplitSystem {
   Linearization* h_ = nullptr;
   std::vector<Part> parts_;
   std::size_t group_count_ = 0;
-  Buffer<float> identity_, rest_, pivots_, excess_;
+  Buffer<float> identity_, rest_;
+  Buffer<std::uint32_t> pivots_, excess_;
+  Buffer<float> pivot_units_, excess_units_;
   std::vector<std::uint16_t> free_;
-  std::span<float> vectors_;  // r̂, p̂, x̂, e, g by group; memory of h_
+  /// Vectors by group, in memory of h_: c = Gᵀ t + G⁻¹ ((A − D) t − u), `further_` = K t.
+  float *r_ = nullptr, *p_ = nullptr, *x_ = nullptr, *c_ = nullptr, *further_ = nullptr;
   FloatVectors flat_;
   FloatVectors other_;        // beside flat_, for corrections
   FloatVectors t_, product_;  // t and K t by vertex

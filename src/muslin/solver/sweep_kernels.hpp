@@ -13,6 +13,13 @@ namespace muslin::sweep_kernels {
 inline constexpr int lanes = CouplingPattern::lanes;
 inline constexpr int vector_size = 3 * lanes;  ///< floats of a group in a vector: 16 x, 16 y, 16 z
 inline constexpr int matrix_size = 6 * lanes;  ///< xx, yx, zx, yy, zy, zz by 16
+inline constexpr int packed_size = 4 * lanes;  ///< words of the same as integers of 21 bits
+
+/// 3×3 matrices of 16 lanes by group, integers times a unit of the group.
+struct PackedMatrices {
+  std::uint32_t* words = nullptr;
+  float* units = nullptr;
+};
 
 /// Groups group_begin … group_end − 1 of a pattern. Vectors by group, `flat` by position.
 struct Sweep {
@@ -22,8 +29,8 @@ struct Sweep {
   const CouplingPattern::Link* links = nullptr;
   const std::uint32_t* coefficients = nullptr;
   const float* units = nullptr;
-  const float* pivots = nullptr;  ///< M, lower triangular, by group
-  const float* excess = nullptr;  ///< A − D by group
+  PackedMatrices pivots;  ///< M, lower triangular
+  PackedMatrices excess;  ///< A − D, D = (MᵀM)⁻¹ of the M that is stored
   Floats flat;                    ///< what neighbours read
 };
 
@@ -36,24 +43,23 @@ struct Diagonal {
 struct Kernels {
   /// M and A − D of each group, in ascending order; `upper` (m00, m10, m20) and `lower` (m11, m21, m22) by
   /// position receive M for the groups to come. Returns the largest ‖A‖² / identity² of a free vertex.
-  float (*factor)(const Sweep& sweep, const Diagonal& diagonal, Floats upper, Floats lower, float* pivots,
-                  float* excess);
+  float (*factor)(const Sweep& sweep, const Diagonal& diagonal, Floats upper, Floats lower);
   /// r = F⁻¹ r; returns rᵀr.
   double (*solve_forward)(const Sweep& sweep, float* r);
-  /// x += alpha p, p = r + beta p, flat = t = F⁻ᵀ p, e = (A − D) t − u, g = p + M u, with u what the later
-  /// neighbours' couplings make of t. Returns pᵀg + tᵀe = tᵀH t.
+  /// x += alpha p, p = r + beta p, flat = t = F⁻ᵀ p, c = g + M e with g = p + M u and e = (A − D) t − u, u what
+  /// the later neighbours' couplings make of t. Returns pᵀg + tᵀe = tᵀH t.
   double (*direction)(const Sweep& sweep, float alpha, float beta, const float* r, float* x, float* p,
-                      float* e, float* g);
-  /// r −= alpha (g + F⁻¹ e); returns rᵀr.
-  double (*residual)(const Sweep& sweep, float alpha, const float* e, const float* g, float* r);
+                      float* c);
+  /// r −= alpha (g + F⁻¹ (e + further)) after `direction`; returns rᵀr. `further` by group, null if zero.
+  double (*residual)(const Sweep& sweep, float alpha, float* c, const float* further, float* r);
   /// flat = F⁻ᵀ (x + alpha p).
   void (*solve_backward)(const Sweep& sweep, float alpha, const float* x, const float* p);
-  /// As `residual`, and then e = F r; `other` is room by position, which receives Mᵀ r.
-  double (*residual_and_product)(const Sweep& sweep, float alpha, float* e, const float* g, float* r,
+  /// As `residual`, and then c = F r; `other` is room by position, which receives Mᵀ r.
+  double (*residual_and_product)(const Sweep& sweep, float alpha, float* c, const float* further, float* r,
                                  Floats other);
-  /// As `direction` with p = r + Fᵀ c + beta p, c = `correction` by position.
+  /// As `direction` with p = r + Fᵀ of `correction` (by position) + beta p.
   double (*corrected_direction)(const Sweep& sweep, float alpha, float beta, const float* r, float* x,
-                                float* p, float* e, float* g, Floats correction);
+                                float* p, float* c, Floats correction);
 };
 
 /// The best for this processor.
