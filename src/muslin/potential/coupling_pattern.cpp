@@ -136,15 +136,22 @@ void CouplingPattern::arrange(const EarlierEnds& earlier, const Split& split, bo
       std::sort(places.begin(), places.end());
       Task task;
       task.group_begin = static_cast<int>(groups_.size());
-      for (std::size_t i = 0; i < places.size();) {
-        std::size_t end = i;
-        while (end < places.size() && end < i + lanes && places[end].level == places[i].level) ++end;
-        const std::size_t base = vertex_.size();
-        empty_group();
-        for (std::size_t l = 0; i < end; ++i, ++l) {
-          vertex_[base + l] = vertices[at(places[i].rank)];
-          position_[at(vertex_[base + l])] = static_cast<int>(base + l);
+      // A group takes what comes for as long as nothing in it is coupled to another of it.
+      std::size_t base = 0, taken = lanes;
+      for (const Place& place : places) {
+        const int v = vertices[at(place.rank)];
+        bool waits = taken == lanes;
+        for (std::int64_t i = earlier.begin[at(v)]; i < earlier.begin[at(v) + 1] && !waits; ++i) {
+          const int u = earlier.couplings[at(i)].vertex;
+          waits = split.task[at(u)] == t && at(position_[at(u)]) >= base;
         }
+        if (waits) {
+          base = vertex_.size();
+          taken = 0;
+          empty_group();
+        }
+        vertex_[base + taken] = v;
+        position_[at(v)] = static_cast<int>(base + taken++);
       }
       task.group_end = static_cast<int>(groups_.size());
       tasks_.push_back(task);
