@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace muslin {
 namespace {
@@ -24,6 +25,23 @@ int slab_count(int vertex_count, int reach) {
   return std::clamp(vertex_count / usual_slab / 2 * 2, 2, std::min(most_slabs, most));
 }
 
+/// A thin layer is a chain along its rows, of which each level would hold a vertex or two. Cut into pieces that
+/// are eliminated side by side, every second one backwards, it has more of them in fewer levels.
+std::vector<int> from_many_ends(const std::vector<int>& layer) {
+  constexpr std::size_t pieces = 64, shortest = 8;
+  const std::size_t length = std::max(shortest, layer.size() / pieces + 1);
+  std::vector<int> order;
+  for (std::size_t i = 0; i < length; ++i) {
+    for (std::size_t piece = 0; piece * length < layer.size(); ++piece) {
+      const std::size_t v = piece * length + (piece % 2 == 0 ? i : length - 1 - i);
+      if (v < layer.size()) order.push_back(layer[v]);
+    }
+  }
+  return order;
+}
+
+using Pair = std::pair<int, int>;
+
 /// Calls body(a, b, kind, index) for every coupling.
 template <class Body>
 void for_each_coupling(std::span<const CouplingRun> runs, const Body& body) {
@@ -36,8 +54,7 @@ void for_each_coupling(std::span<const CouplingRun> runs, const Body& body) {
 
 bool CouplingPattern::Split::before(int u, int v) const {
   const int task_u = task[at(u)], task_v = task[at(v)];
-  if (task_u != task_v) return task_u < task_v;
-  return downwards[at(task_u)] ? u > v : u < v;
+  return task_u != task_v ? task_u < task_v : rank[at(u)] < rank[at(v)];
 }
 
 CouplingPattern::CouplingPattern(std::span<const CouplingRun> runs, int vertex_count,
@@ -71,34 +88,58 @@ CouplingPattern::CouplingPattern(std::span<const CouplingRun> runs, int vertex_c
 
 CouplingPattern::Split CouplingPattern::split(std::span<const CouplingRun> runs) const {
   int reach = 0;
-  for (const CouplingRun& run : runs) reach = std::max(reach, std::abs(run.b - run.a));
+  for (const CouplingRun& run : runs) {
+    assert(run.kind >= 0 && run.kind < 256);
+    reach = std::max(reach, std::abs(run.b - run.a));
+  }
   const int slabs = slab_count(vertex_count(), reach);
   // Tasks 0 … slabs − 1 are the layers that go first, then come the slabs, then the layers that wait.
   Split split;
   split.phase = {0, slabs, 2 * slabs, 3 * slabs};
   split.task.resize(position_.size());
-  split.downwards.resize(at(3 * slabs));
   std::vector<int> slab(position_.size());
   for (int s = 0; s < slabs; ++s) {
     const std::int64_t count = vertex_count(), begin = count * s / slabs, end = count * (s + 1) / slabs;
     std::fill(slab.begin() + begin, slab.begin() + end, s);
     std::fill(split.task.begin() + begin, split.task.begin() + end, slabs + s);
-    split.downwards[at(slabs + s)] = s % 2 == 1;
   }
   for_each_coupling(runs, [&](int a, int b, int, std::int64_t) {
     assert(a != b);
     const int low = std::min(a, b), high = std::max(a, b), s = slab[at(high)];
     if (slab[at(low)] != s) split.task[at(high)] = s % 2 == 0 ? s : 2 * slabs + s;
   });
+  split.members.resize(at(3 * slabs));
+  std::vector<std::vector<Pair>> inside(at(3 * slabs));  // of layers
+  for_each_coupling(runs, [&](int a, int b, int, std::int64_t) {
+    const int t = split.task[at(a)];
+    if (split.task[at(b)] == t && (t < slabs || t >= 2 * slabs))
+      inside[at(t)].push_back({std::max(a, b), std::min(a, b)});
+  });
+  split.rank.resize(position_.size());
+  const auto depth = [&level = split.rank](std::vector<Pair>& couplings) {
+    std::sort(couplings.begin(), couplings.end());
+    int deepest = 0;
+    for (const auto& [high, low] : couplings) {
+      level[at(high)] = std::max(level[at(high)], level[at(low)] + 1);
+      deepest = std::max(deepest, level[at(high)]);
+    }
+    return deepest + 1;
+  };
+  for (int v = 0; v < vertex_count(); ++v) split.members[at(split.task[at(v)])].push_back(v);
+  for (int t = 0; t < 3 * slabs; ++t) {
+    std::vector<int>& vertices = split.members[at(t)];
+    const bool is_slab = t >= slabs && t < 2 * slabs;
+    if (is_slab && t % 2 != slabs % 2) std::reverse(vertices.begin(), vertices.end());
+    if (!is_slab && vertices.size() < at(lanes) * at(depth(inside[at(t)]))) vertices = from_many_ends(vertices);
+  }
+  for (const std::vector<int>& vertices : split.members)
+    for (std::size_t i = 0; i < vertices.size(); ++i) split.rank[at(vertices[i])] = static_cast<int>(i);
   return split;
 }
 
 void CouplingPattern::arrange(const EarlierEnds& earlier, const Split& split, bool by_count) {
   vertex_.clear(), groups_.clear(), tasks_.clear(), phases_.clear();
   const int count = vertex_count();
-  const std::size_t task_count = split.downwards.size();
-  std::vector<std::vector<int>> members(task_count);
-  for (int v = 0; v < count; ++v) members[at(split.task[at(v)])].push_back(v);
   std::int64_t most = 0;  // couplings of a vertex with earlier ones
   for (int v = 0; v < count; ++v) most = std::max(most, earlier.begin[at(v) + 1] - earlier.begin[at(v)]);
 
@@ -118,9 +159,8 @@ void CouplingPattern::arrange(const EarlierEnds& earlier, const Split& split, bo
   for (std::size_t phase = 0; phase + 1 < split.phase.size(); ++phase) {
     phases_.push_back(static_cast<int>(tasks_.size()));
     for (int t = split.phase[phase]; t < split.phase[phase + 1]; ++t) {
-      std::vector<int>& vertices = members[at(t)];
+      const std::vector<int>& vertices = split.members[at(t)];
       if (vertices.empty()) continue;
-      if (split.downwards[at(t)]) std::reverse(vertices.begin(), vertices.end());
       places.clear();
       for (std::size_t rank = 0; rank < vertices.size(); ++rank) {
         const int v = vertices[rank];
@@ -189,12 +229,12 @@ void CouplingPattern::make_blocks(const EarlierEnds& earlier, std::vector<std::i
       const bool fits =
           e.kind == kind && e.lane > last_lane && (e.base == blocks_.back().second || breaks == 0);
       if (!fits) {
-        blocks_.push_back({e.kind / 2, static_cast<int>(g), e.base, e.base, 0, 0});
+        blocks_.push_back({static_cast<int>(g), e.base, e.base, 0, static_cast<std::uint8_t>(e.kind / 2), 0});
         if (order) order->insert(order->end(), lanes, -1);
         breaks = 0;
       } else if (e.base != blocks_.back().second) {
         blocks_.back().second = e.base;
-        blocks_.back().cut = e.lane;
+        blocks_.back().cut = static_cast<std::uint8_t>(e.lane);
         breaks = 1;
       }
       kind = e.kind;
@@ -249,7 +289,7 @@ void CouplingPattern::make_links() {
       Link& link = links_.back();
       for (std::size_t h = at(halves); h < 2; ++h) {  // the second half is like the first until it is known
         link.block[h] = e->block;
-        link.shift[h] = e->shift;
+        link.shift[h] = static_cast<std::int8_t>(e->shift);
         link.position[h] = lanes * blocks_[at(e->block)].group + e->shift;
         link.used[h] = h == at(halves) ? used : std::uint16_t{0};
       }

@@ -22,7 +22,7 @@ namespace muslin {
 
 /// Couplings of vertices a + i and b + i, 0 ≤ i < length.
 struct CouplingRun {
-  int kind = 0;  ///< the owner's own number
+  int kind = 0;  ///< the owner's own number, 0 … 255
   int a = 0, b = 0, length = 0;
 };
 
@@ -32,17 +32,18 @@ class CouplingPattern {
 
   /// Couplings of one kind between the vertices of a group and earlier ones, at most one per lane.
   struct Block {
-    int kind = 0;
     int group = 0;
-    int first = 0, second = 0,
-        cut = 0;             ///< lane l's earlier end is at position l + (l < cut ? first : second)
+    int first = 0, second = 0;  ///< lane l's earlier end is at position l + (l < cut ? first : second)
+    std::uint8_t cut = 0;
+    std::uint8_t kind = 0;
     std::uint16_t used = 0;  ///< bit l: lane l has a coupling
   };
   /// The same couplings seen from their earlier ends: where bit l of used[i] is set, lane l of the group is
   /// coupled to position l + position[i] by lane l + shift[i] of block[i].
   struct Link {
-    std::array<int, 2> position{}, block{}, shift{};
+    std::array<int, 2> position{}, block{};
     std::array<std::uint16_t, 2> used{};
+    std::array<std::int8_t, 2> shift{};
   };
   struct Group {
     int block_begin = 0, block_end = 0;
@@ -85,10 +86,10 @@ class CouplingPattern {
     std::vector<std::int64_t> begin;
     std::vector<Coupling> couplings;
   };
-  /// The task of each vertex, and whether a task goes downwards.
+  /// Which vertices each task eliminates, in what order; of each vertex the task and its rank in there.
   struct Split {
-    std::vector<int> task;
-    std::vector<bool> downwards;
+    std::vector<std::vector<int>> members;
+    std::vector<int> task, rank;
     std::array<int, 4> phase{};  // first task of each, and the number of tasks
     bool before(int u, int v) const;
   };
