@@ -25,21 +25,6 @@ int slab_count(int vertex_count, int reach) {
   return std::clamp(vertex_count / usual_slab / 2 * 2, 2, std::min(most_slabs, most));
 }
 
-/// A thin layer is a chain along its rows, of which each level would hold a vertex or two. Cut into pieces that
-/// are eliminated side by side, every second one backwards, it has more of them in fewer levels.
-std::vector<int> from_many_ends(const std::vector<int>& layer) {
-  constexpr std::size_t pieces = 64, shortest = 8;
-  const std::size_t length = std::max(shortest, layer.size() / pieces + 1);
-  std::vector<int> order;
-  for (std::size_t i = 0; i < length; ++i) {
-    for (std::size_t piece = 0; piece * length < layer.size(); ++piece) {
-      const std::size_t v = piece * length + (piece % 2 == 0 ? i : length - 1 - i);
-      if (v < layer.size()) order.push_back(layer[v]);
-    }
-  }
-  return order;
-}
-
 using Pair = std::pair<int, int>;
 
 /// Calls body(a, b, kind, index) for every coupling.
@@ -48,6 +33,66 @@ void for_each_coupling(std::span<const CouplingRun> runs, const Body& body) {
   std::int64_t index = 0;
   for (const CouplingRun& run : runs)
     for (int i = 0; i < run.length; ++i) body(run.a + i, run.b + i, run.kind, index++);
+}
+
+/// A layer of a sheet is a chain along its rows, of which each level has a vertex or two. Its rows are
+/// eliminated from both ends towards the middle, which leaves out no more than from one end, and side by side
+/// with those of other layers.
+template <class Split>
+void gather_thin_layers(std::span<const CouplingRun> runs, int slabs, Split& split) {
+  std::vector<std::vector<Pair>> inside(at(3 * slabs));  // couplings of each layer
+  for_each_coupling(runs, [&](int a, int b, int, std::int64_t) {
+    const int t = split.task[at(a)];
+    if (split.task[at(b)] == t && (t < slabs || t >= 2 * slabs))
+      inside[at(t)].push_back({std::max(a, b), std::min(a, b)});
+  });
+  std::vector<int> level(split.task.size());
+  const auto depth = [&level](const std::vector<Pair>& couplings) {
+    int deepest = 0;
+    for (const auto& [high, low] : couplings) {
+      level[at(high)] = std::max(level[at(high)], level[at(low)] + 1);
+      deepest = std::max(deepest, level[at(high)]);
+    }
+    return deepest + 1;
+  };
+  for (const int phase : {0, 2 * slabs}) {
+    std::vector<int> thin;
+    int host = -1;
+    std::size_t room = 0;
+    for (int t = phase; t < phase + slabs; ++t) {
+      std::vector<int>& vertices = split.members[at(t)];
+      std::vector<Pair>& couplings = inside[at(t)];
+      std::sort(couplings.begin(), couplings.end());
+      const std::size_t size = vertices.size(), wide = at(lanes) * at(depth(couplings));
+      if (size == 0 || size >= wide) continue;
+      for (std::size_t begin = 0, end = 0; begin < size; begin = end) {
+        do ++end;
+        while (end < size && std::binary_search(couplings.begin(), couplings.end(),
+                                                Pair{vertices[end], vertices[end] - 1}));
+        for (std::size_t i = begin; i < end; ++i) {
+          const bool nearer_to_end = 2 * i > begin + end - 1;
+          level[at(vertices[i])] = static_cast<int>(nearer_to_end ? 2 * (end - 1 - i) + 1 : 2 * (i - begin));
+        }
+      }
+      if (host < 0 || room < size) {
+        host = t;
+        thin.push_back(t);
+        room = wide / 2;
+      } else {
+        for (const int v : vertices) split.task[at(v)] = host;
+        split.members[at(host)].insert(split.members[at(host)].end(), vertices.begin(), vertices.end());
+        vertices.clear();
+      }
+      room -= std::min(room, size);
+    }
+    for (const int t : thin) {
+      std::vector<int>& vertices = split.members[at(t)];
+      std::sort(vertices.begin(), vertices.end(), [&](int u, int v) {
+        const int of_u = level[at(u)], of_v = level[at(v)];
+        return of_u != of_v ? of_u < of_v : of_u % 2 == 0 ? u < v : u > v;
+      });
+    }
+  }
 }
 
 }  // namespace
@@ -109,29 +154,11 @@ CouplingPattern::Split CouplingPattern::split(std::span<const CouplingRun> runs)
     if (slab[at(low)] != s) split.task[at(high)] = s % 2 == 0 ? s : 2 * slabs + s;
   });
   split.members.resize(at(3 * slabs));
-  std::vector<std::vector<Pair>> inside(at(3 * slabs));  // of layers
-  for_each_coupling(runs, [&](int a, int b, int, std::int64_t) {
-    const int t = split.task[at(a)];
-    if (split.task[at(b)] == t && (t < slabs || t >= 2 * slabs))
-      inside[at(t)].push_back({std::max(a, b), std::min(a, b)});
-  });
-  split.rank.resize(position_.size());
-  const auto depth = [&level = split.rank](std::vector<Pair>& couplings) {
-    std::sort(couplings.begin(), couplings.end());
-    int deepest = 0;
-    for (const auto& [high, low] : couplings) {
-      level[at(high)] = std::max(level[at(high)], level[at(low)] + 1);
-      deepest = std::max(deepest, level[at(high)]);
-    }
-    return deepest + 1;
-  };
   for (int v = 0; v < vertex_count(); ++v) split.members[at(split.task[at(v)])].push_back(v);
-  for (int t = 0; t < 3 * slabs; ++t) {
-    std::vector<int>& vertices = split.members[at(t)];
-    const bool is_slab = t >= slabs && t < 2 * slabs;
-    if (is_slab && t % 2 != slabs % 2) std::reverse(vertices.begin(), vertices.end());
-    if (!is_slab && vertices.size() < at(lanes) * at(depth(inside[at(t)]))) vertices = from_many_ends(vertices);
-  }
+  for (int t = slabs + 1; t < 2 * slabs; t += 2)
+    std::reverse(split.members[at(t)].begin(), split.members[at(t)].end());
+  gather_thin_layers(runs, slabs, split);
+  split.rank.resize(position_.size());
   for (const std::vector<int>& vertices : split.members)
     for (std::size_t i = 0; i < vertices.size(); ++i) split.rank[at(vertices[i])] = static_cast<int>(i);
   return split;

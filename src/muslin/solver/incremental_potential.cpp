@@ -23,11 +23,11 @@ MUSLIN_VECTOR_CODE void inertia(const double* __restrict x, const double* __rest
     w[i] = 0.5 * m[i] * (dx * dx + dy * dy + dz * dz);
   }
 }
-/// The same, and g = scale g + m (x − x̃), zero on held vertices.
+/// The same, g = scale g + m (x − x̃), zero on held vertices, squares = |g|² and ratios = |g|² / m².
 MUSLIN_VECTOR_CODE void inertia_and_gradient(const double* __restrict x, const double* __restrict prediction,
                                              const double* __restrict m, const std::uint8_t* __restrict held,
-                                             double scale, int n, double* __restrict g,
-                                             double* __restrict w) {
+                                             double scale, int n, double* __restrict g, double* __restrict w,
+                                             double* __restrict squares, double* __restrict ratios) {
   for (int i = 0; i < n; ++i) {
     const double dx = x[3 * i] - prediction[3 * i], dy = x[3 * i + 1] - prediction[3 * i + 1],
                  dz = x[3 * i + 2] - prediction[3 * i + 2];
@@ -38,6 +38,8 @@ MUSLIN_VECTOR_CODE void inertia_and_gradient(const double* __restrict x, const d
     g[3 * i] = free ? gx : 0.0;
     g[3 * i + 1] = free ? gy : 0.0;
     g[3 * i + 2] = free ? gz : 0.0;
+    squares[i] = free ? gx * gx + gy * gy + gz * gz : 0.0;
+    ratios[i] = squares[i] / (m[i] * m[i]);
   }
 }
 /// squares = |g|² and ratios = |g|² / m², zero on held vertices.
@@ -61,6 +63,58 @@ MUSLIN_VECTOR_CODE double sum_of(const double* w, int n) {
   return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
+/// The same of maxima. What is not a number does not show.
+MUSLIN_VECTOR_CODE double largest_of(const double* w, int n) {
+  constexpr int lanes = 8;
+  double largest[lanes] = {};
+  int i = 0;
+  for (; i + lanes <= n; i += lanes)
+    for (int l = 0; l < lanes; ++l) largest[l] = w[i + l] > largest[l] ? w[i + l] : largest[l];
+  for (; i < n; ++i) largest[0] = std::max(largest[0], w[i]);
+  return *std::max_element(largest, largest + lanes);
+}
+MUSLIN_VECTOR_CODE double largest_magnitude(const double* w, int n) {
+  constexpr int lanes = 8;
+  double largest[lanes] = {};
+  int i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    for (int l = 0; l < lanes; ++l) {
+      const double magnitude = std::abs(w[i + l]);
+      largest[l] = magnitude > largest[l] ? magnitude : largest[l];
+    }
+  }
+  for (; i < n; ++i) largest[0] = std::max(largest[0], std::abs(w[i]));
+  return *std::max_element(largest, largest + lanes);
+}
+
+/// The largest of many ratios, the first of equal ones, and the sum of the squares.
+struct Worst {
+  double ratio = 0;
+  int vertex = -1;
+  double square = 0;
+
+  // A NaN must not hide: it compares false with everything.
+  void consider(double r, int v) {
+    if (!(r <= ratio) && !std::isnan(ratio)) ratio = r, vertex = v;
+  }
+  void consider(const double* squares, const double* ratios, int n, std::size_t first) {
+    const double sum = sum_of(squares, n);
+    square += sum;
+    if (largest_of(ratios, n) <= ratio && std::isfinite(sum)) return;
+    for (int i = 0; i < n; ++i) consider(ratios[i], static_cast<int>(first) + i);
+  }
+  Worst operator+(const Worst& later) const {
+    Worst worst = *this;
+    worst.consider(later.ratio, later.vertex);
+    worst.square += later.square;
+    return worst;
+  }
+};
+
+IncrementalPotential::Imbalance imbalance_of(const Worst& worst, double dt) {
+  return {std::sqrt(worst.ratio) / (dt * dt), worst.vertex, std::sqrt(worst.square)};
+}
+
 /// Calls body(first, n) for chunks of [begin, end).
 template <class Body>
 void for_each_chunk(std::size_t begin, std::size_t end, const Body& body) {
@@ -69,6 +123,13 @@ void for_each_chunk(std::size_t begin, std::size_t end, const Body& body) {
 }
 
 }  // namespace
+
+struct IncrementalPotential::Inertia {
+  double value = 0;
+  Worst worst;
+
+  Inertia operator+(const Inertia& later) const { return {value + later.value, worst + later.worst}; }
+};
 
 IncrementalPotential::IncrementalPotential(const StepProblem& problem, ConstVectors prediction, double dt)
     : problem_(problem), prediction_(prediction), dt_(dt) {}
@@ -88,15 +149,16 @@ IncrementalPotential::Value IncrementalPotential::value(ConstVectors x) const {
   return result;
 }
 
-/// g becomes dt² g plus the gradient of the inertial term, whose value is returned.
-double IncrementalPotential::add_inertia(ConstVectors x, Vectors g) const {
-  return parallel_sum(size(), vector_grain, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
+/// g becomes dt² g plus the gradient of the inertial term.
+IncrementalPotential::Inertia IncrementalPotential::add_inertia(ConstVectors x, Vectors g) const {
+  return parallel_sum(size(), vector_grain, Inertia{}, [&](std::size_t begin, std::size_t end) {
+    Inertia sum;
     for_each_chunk(begin, end, [&](std::size_t v, int n) {
-      alignas(64) double w[chunk];
+      alignas(64) double w[chunk], squares[chunk], ratios[chunk];
       inertia_and_gradient(x[v].data(), prediction_[v].data(), &problem_.masses[v], &problem_.fixed[v],
-                           dt_ * dt_, n, g[v].data(), w);
-      sum += sum_of(w, n);
+                           dt_ * dt_, n, g[v].data(), w, squares, ratios);
+      sum.value += sum_of(w, n);
+      sum.worst.consider(squares, ratios, n, v);
     });
     return sum;
   });
@@ -108,15 +170,19 @@ void IncrementalPotential::gradient(ConstVectors x, Vectors g) const {
   add_inertia(x, g);
 }
 
-IncrementalPotential::Value IncrementalPotential::value_and_gradient(ConstVectors x, Vectors g) const {
+IncrementalPotential::Evaluation IncrementalPotential::evaluate(ConstVectors x, Vectors g) const {
   set_zero(g);
   std::vector<double> terms;
   for (const Potential* potential : problem_.potentials)
     terms.push_back(dt_ * dt_ * potential->add_gradient_and_value(x, g));
-  const double inertial = add_inertia(x, g);
-  Value result{inertial, inertial};
-  for (const double term : terms) result += term;
+  const Inertia inertia = add_inertia(x, g);
+  Evaluation result{{inertia.value, inertia.value}, imbalance_of(inertia.worst, dt_)};
+  for (const double term : terms) result.value += term;
   return result;
+}
+
+IncrementalPotential::Value IncrementalPotential::value_and_gradient(ConstVectors x, Vectors g) const {
+  return evaluate(x, g).value;
 }
 
 void IncrementalPotential::hessian_product(ConstVectors x, ConstVectors p, Vectors y) const {
@@ -157,33 +223,16 @@ double IncrementalPotential::max_step(ConstVectors x, ConstVectors d) const {
 }
 
 IncrementalPotential::Imbalance IncrementalPotential::imbalance(ConstVectors g) const {
-  struct Worst {
-    double ratio = 0;
-    int vertex = -1;
-    double square = 0;
-
-    // A NaN must not hide: it compares false with everything.
-    void consider(double r, int v) {
-      if (!(r <= ratio) && !std::isnan(ratio)) ratio = r, vertex = v;
-    }
-    Worst operator+(const Worst& later) const {
-      Worst worst = *this;
-      worst.consider(later.ratio, later.vertex);
-      worst.square += later.square;
-      return worst;
-    }
-  };
   const Worst worst = parallel_sum(size(), vector_grain, Worst{}, [&](std::size_t begin, std::size_t end) {
     Worst of_block;
     for_each_chunk(begin, end, [&](std::size_t v, int n) {
       alignas(64) double squares[chunk], ratios[chunk];
       squared_accelerations(g[v].data(), &problem_.masses[v], &problem_.fixed[v], n, squares, ratios);
-      for (int i = 0; i < n; ++i) of_block.consider(ratios[i], static_cast<int>(v) + i);
-      of_block.square += sum_of(squares, n);
+      of_block.consider(squares, ratios, n, v);
     });
     return of_block;
   });
-  return {std::sqrt(worst.ratio) / (dt_ * dt_), worst.vertex, std::sqrt(worst.square)};
+  return imbalance_of(worst, dt_);
 }
 
 double IncrementalPotential::rounding_floor(ConstVectors x, double stiffest) const {
@@ -195,8 +244,9 @@ double IncrementalPotential::rounding_floor(ConstVectors x, double stiffest) con
   const double farthest =  // coordinate [m]
       parallel_sum(x.size(), vector_grain, Largest{}, [&](std::size_t begin, std::size_t end) {
         Largest largest;
-        for (std::size_t v = begin; v < end; ++v)
-          largest.value = std::max(largest.value, x[v].lpNorm<Eigen::Infinity>());
+        for_each_chunk(begin, end, [&](std::size_t v, int n) {
+          largest.value = std::max(largest.value, largest_magnitude(x[v].data(), 3 * n));
+        });
         return largest;
       }).value;
   // Neighbours' couplings add up to no more than the diagonal block again.

@@ -49,6 +49,12 @@ class IncrementalPotential {
     double norm = 0;  ///< ‖g‖ over free vertices [kg m]
   };
   Imbalance imbalance(ConstVectors g) const;
+  /// Value, gradient and the gradient's imbalance in as few passes; the same bits.
+  struct Evaluation {
+    Value value;
+    Imbalance imbalance;
+  };
+  Evaluation evaluate(ConstVectors x, Vectors g) const;
   /// What of the imbalance rounding can cause: half a unit in the last place of every coordinate, carried
   /// through the Hessian [m/s²]. Nothing below it can be asked for. `stiffest` is the largest ‖diagonal
   /// block‖ / mass.
@@ -62,7 +68,8 @@ class IncrementalPotential {
   ConstVectors rest_positions() const { return problem_.rest_positions; }
 
  private:
-  double add_inertia(ConstVectors x, Vectors g) const;
+  struct Inertia;
+  Inertia add_inertia(ConstVectors x, Vectors g) const;
 
   const StepProblem& problem_;
   ConstVectors prediction_;

@@ -24,8 +24,7 @@ constexpr double slightest_change = 0.03, ample = 3;
 
 struct Point {
   Vectors x;
-  IncrementalPotential::Value value;
-  IncrementalPotential::Imbalance imbalance;
+  IncrementalPotential::Evaluation at;
 };
 
 /// Moves `point` along s, downhill with slope gᵀs < 0, and g with it; false if no step helps: then `point`
@@ -33,28 +32,28 @@ struct Point {
 bool line_search(const IncrementalPotential& function, ConstVectors s, double slope, Point& point, Vectors g,
                  Vectors& room) {
   const double longest = std::min(1.0, 0.9 * function.max_step(point.x, s));
-  const double allowance = rounding * point.value.magnitude;
+  const double allowance = rounding * point.at.value.magnitude;
   for (double t = longest; t > smallest_step;) {
     combine(point.x, t, s, room);
     // The first step tried is nearly always taken: its gradient is worth computing along with the value.
     bool have_gradient = t == longest;
-    const IncrementalPotential::Value value =
-        have_gradient ? function.value_and_gradient(room, g) : function.value(room);
-    const double change = value.value - point.value.value;
+    IncrementalPotential::Evaluation tried;
+    if (have_gradient) {
+      tried = function.evaluate(room, g);
+    } else {
+      tried.value = function.value(room);
+    }
+    const double change = tried.value.value - point.at.value.value;
     bool accepted = change <= armijo * t * slope;
     if (!have_gradient && (accepted || change <= allowance)) {
-      function.gradient(room, g);
+      tried = function.evaluate(room, g);
       have_gradient = true;
     }
     if (!accepted && change <= allowance) accepted = std::abs(dot(g, s)) <= slope_share * std::abs(slope);
-    if (accepted) {
-      const IncrementalPotential::Imbalance imbalance = function.imbalance(g);
-      if (std::isfinite(imbalance.norm)) {
-        std::swap(point.x, room);
-        point.value = value;
-        point.imbalance = imbalance;
-        return true;
-      }
+    if (accepted && std::isfinite(tried.imbalance.norm)) {
+      std::swap(point.x, room);
+      point.at = tried;
+      return true;
     }
     // The minimum of the parabola through value and slope at 0 and the value at t, kept within bounds.
     const double parabola = -0.5 * slope * t * t / (change - t * slope);
@@ -78,36 +77,37 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
 }
 
 std::size_t NewtonWorkspace::bytes() const {
-  const std::size_t vectors = x.capacity() + g.capacity() + s.capacity();
+  const std::size_t vectors = x.capacity() + g.capacity() + s.capacity() + end.capacity();
   return vectors * sizeof(Vec3) + inner.bytes();
 }
 
-StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings, Vectors x,
-                    NewtonWorkspace& workspace) {
+StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings,
+                    const IncrementalPotential::Evaluation& start, Vectors x, NewtonWorkspace& workspace) {
   const std::size_t count = function.size();
-  auto& [other, g, s, inner] = workspace;
-  for (auto* vectors : {&other, &g, &s}) vectors->resize(count);
-  Point point;
-  point.x = x;
+  auto& [other, g, s, end, inner] = workspace;
+  for (auto* vectors : {&other, &s}) vectors->resize(count);
+  Point point{x, start};
   Vectors room = other;
-  point.value = function.value_and_gradient(x, g);
-  point.imbalance = function.imbalance(g);
 
   inner.begin_step();
   StepReport report;
   double forcing = loosest_forcing;
   double shrink = 1;       // of the gradient in the last step
   bool as_before = false;  // whether H is that of the last step
+  double floor = 0;        // of the imbalance
   for (;;) {
-    const IncrementalPotential::Imbalance imbalance = point.imbalance;
+    const IncrementalPotential::Imbalance imbalance = point.at.imbalance;
     report.residual = imbalance.largest;
     report.worst_vertex = imbalance.vertex;
     report.converged = imbalance.largest <= settings.tolerance;
     if (report.converged) break;
     as_before =
         !as_before && shrink <= slightest_change && ample * shrink * imbalance.largest <= settings.tolerance;
-    if (!as_before) inner.linearize(function, point.x);
-    if (imbalance.largest <= function.rounding_floor(point.x, inner.stiffest())) {
+    if (!as_before) {
+      inner.linearize(function, point.x);
+      floor = function.rounding_floor(point.x, inner.stiffest());
+    }
+    if (imbalance.largest <= floor) {
       report.converged = true;
       break;
     }
@@ -138,7 +138,7 @@ StepReport minimize(const IncrementalPotential& function, const SolverSettings& 
       break;
     }
     // Eisenstat and Walker's second choice with exponent 2: loose far from the solution, quadratic near it.
-    shrink = point.imbalance.norm / imbalance.norm;
+    shrink = point.at.imbalance.norm / imbalance.norm;
     forcing = std::clamp(0.9 * shrink * shrink, 1e-4, loosest_forcing);
   }
   if (point.x.data() != x.data()) std::copy(point.x.begin(), point.x.end(), x.begin());

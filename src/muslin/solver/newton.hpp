@@ -13,6 +13,7 @@ namespace muslin {
 struct NewtonWorkspace {
   std::vector<Vec3> x;     ///< where the line search starts, or what it tries
   std::vector<Vec3> g, s;  ///< gradient and step
+  std::vector<Vec3> end;   ///< room for the result
   InnerSolver inner;
 
   std::size_t bytes() const;
@@ -30,7 +31,8 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
 /// and Walker 1996) and up to the first negative curvature, then backtracks along s until the value has
 /// fallen enough (Armijo). Where values differ by less than their rounding, the slope decides instead
 /// (the approximate Wolfe condition of Hager and Zhang 2005).
-StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings, Vectors x,
-                    NewtonWorkspace& workspace);
+/// `start` is what `function` evaluates to at x, with the gradient in workspace.g.
+StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings,
+                    const IncrementalPotential::Evaluation& start, Vectors x, NewtonWorkspace& workspace);
 
 }  // namespace muslin

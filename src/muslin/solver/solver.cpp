@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "muslin/core/error.hpp"
@@ -24,44 +25,51 @@ StepReport failed(std::string why) {
   return report;
 }
 
-/// A start for the minimisation: extrapolated with the change of velocity of the last step, or the inertial
-/// prediction where that is lower; never past what the potentials allow. Empty if held vertices cannot move
-/// to their targets safely or no start has a finite value.
-std::vector<Vec3> warm_start(const IncrementalPotential& function, const StepProblem& problem,
-                             const State& state, double dt) {
+/// A start for the minimisation, evaluated there: extrapolated with the change of velocity of the last step,
+/// or the inertial prediction where that is lower; never past what the potentials allow. None if held
+/// vertices cannot move to their targets safely or no start has a finite value.
+std::optional<IncrementalPotential::Evaluation> warm_start(const IncrementalPotential& function,
+                                                           const StepProblem& problem, const State& state,
+                                                           double dt, NewtonWorkspace& workspace,
+                                                           std::vector<Vec3>& x) {
   const std::size_t count = function.size();
-  std::vector<Vec3> best;
-  double best_value = INFINITY;
-  std::vector<Vec3> d(count);
-  const auto consider = [&](std::vector<Vec3> x) {
+  std::vector<Vec3>&d = workspace.s, &other = workspace.x;
+  for (auto* vectors : {&x, &d, &other, &workspace.g}) vectors->resize(count);
+  /// `to` becomes candidate(v), or as much of the way there as is safe; false if held vertices cannot follow.
+  const auto go = [&](const auto& candidate, Vectors to) {
     for_each_vertex(count, [&](std::size_t v) {
-      if (function.held(v)) x[v] = problem.targets[v];
-      d[v] = x[v] - state.positions[v];
+      to[v] = function.held(v) ? problem.targets[v] : Vec3(candidate(v));
+      d[v] = to[v] - state.positions[v];
     });
     const double safe = function.max_step(state.positions, d);
-    if (safe < 1) {
-      for (std::size_t v = 0; v < count; ++v) {
-        if (!function.held(v)) d[v] *= 0.9 * safe;
-      }
-      if (function.max_step(state.positions, d) < 1) return;
-      for (std::size_t v = 0; v < count; ++v) {
-        if (!function.held(v)) x[v] = state.positions[v] + d[v];
-      }
+    if (safe >= 1) return true;
+    for (std::size_t v = 0; v < count; ++v) {
+      if (!function.held(v)) d[v] *= 0.9 * safe;
     }
-    const double value = function.value(x).value;
-    if (value < best_value) {
-      best_value = value;
-      best = std::move(x);
+    if (function.max_step(state.positions, d) < 1) return false;
+    for (std::size_t v = 0; v < count; ++v) {
+      if (!function.held(v)) to[v] = state.positions[v] + d[v];
     }
+    return true;
   };
-  if (!state.previous_velocities.empty()) {
-    std::vector<Vec3> x = state.positions;
-    add(2 * dt, state.velocities, x);
-    add(-dt, state.previous_velocities, x);
-    consider(std::move(x));
+  IncrementalPotential::Evaluation best;
+  best.value.value = INFINITY;
+  const auto extrapolated = [&](std::size_t v) {
+    return state.positions[v] + 2 * dt * state.velocities[v] - dt * state.previous_velocities[v];
+  };
+  if (!state.previous_velocities.empty() && go(extrapolated, x)) {
+    // Nearly always the better start: its gradient is worth computing along with the value.
+    best = function.evaluate(x, workspace.g);
+    if (!(best.value.value < INFINITY)) best.value.value = INFINITY;
   }
-  consider(std::vector<Vec3>(function.prediction().begin(), function.prediction().end()));
-  if (best.empty()) consider(state.positions);
+  const auto consider = [&](const auto& candidate) {
+    if (!go(candidate, other) || !(function.value(other).value < best.value.value)) return;
+    std::swap(x, other);
+    best = function.evaluate(x, workspace.g);
+  };
+  consider([&](std::size_t v) { return function.prediction()[v]; });
+  if (best.value.value == INFINITY) consider([&](std::size_t v) { return state.positions[v]; });
+  if (best.value.value == INFINITY) return std::nullopt;
   return best;
 }
 
@@ -73,9 +81,9 @@ StepReport solve_implicit(const SolverSettings& settings, const StepContext& con
     x = state.positions;
     return minimize_guarded(problem, function, settings, state, context.length, x, workspace);
   }
-  x = warm_start(function, problem, state, context.length);
-  if (x.empty()) return failed("the held vertices cannot reach their targets within this step");
-  return minimize(function, settings, x, workspace);
+  const auto start = warm_start(function, problem, state, context.length, workspace, x);
+  if (!start) return failed("the held vertices cannot reach their targets within this step");
+  return minimize(function, settings, *start, x, workspace);
 }
 
 /// Solves H s = b to a relative residual of `tolerance` in the norm of the preconditioner, whatever the
@@ -190,7 +198,7 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
   assert(problem.masses.size() == state.positions.size());
   assert(problem.fixed.size() == state.positions.size());
   assert(state.velocities.size() == state.positions.size());
-  std::vector<Vec3> x;
+  std::vector<Vec3>& x = workspace_->newton.end;
   StepReport report;
   if (problem.guard) {
     if (settings.integrator == Integrator::symplectic_euler)
@@ -217,12 +225,14 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
   if (!report.made()) return report;
   if (problem.guard) problem.guard->end(x);
 
-  std::vector<Vec3> velocities(x.size());
+  // The oldest vectors make room for the newest.
+  state.previous_velocities.resize(x.size());
+  std::swap(state.velocities, state.previous_velocities);
   const bool explicit_step = settings.integrator == Integrator::symplectic_euler;
   const ConstVectors from = explicit_step ? ConstVectors(state.positions) : ConstVectors(context.anchor);
-  for_each_vertex(x.size(), [&](std::size_t v) { velocities[v] = (x[v] - from[v]) / context.dt; });
-  state.previous_positions = std::exchange(state.positions, std::move(x));
-  state.previous_velocities = std::exchange(state.velocities, std::move(velocities));
+  for_each_vertex(x.size(), [&](std::size_t v) { state.velocities[v] = (x[v] - from[v]) / context.dt; });
+  std::swap(state.previous_positions, state.positions);
+  std::swap(state.positions, x);
   state.previous_dt = context.length;
   state.time = context.time_end;
   ++state.step;

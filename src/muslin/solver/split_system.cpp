@@ -18,8 +18,8 @@ constexpr std::size_t grain = 512;  // groups
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-/// Lanes without a coupling read what happens to be there and multiply it by zero: it must be finite, also after
-/// a solve that has overflown.
+/// Lanes without a coupling read what happens to be there and multiply it by zero: it must be finite, also
+/// after a solve that has overflown.
 void clear(const FloatVectors& vectors) {
   for (float* each : {vectors.data().x, vectors.data().y, vectors.data().z})
     std::memset(each, 0, vectors.size() * sizeof(float));
@@ -147,11 +147,11 @@ double SplitSystem::factor(Linearization& h) {
     const std::vector<int>& phases = part.couplings->pattern().phases();
     for (std::size_t phase = 0; phase + 1 < phases.size(); ++phase) {
       const auto tasks = at(phases[phase + 1] - phases[phase]);
-      stiffest = stiffest + parallel_sum(tasks, 1, Largest{}, [&](std::size_t t, std::size_t) {
-                   return Largest{sweep_kernels::kernels().factor(
-                       sweep(part, phases[phase] + static_cast<int>(t)), diagonal, m_upper + first,
-                       m_lower + first)};
-                 });
+      stiffest =
+          stiffest + parallel_sum(tasks, 1, Largest{}, [&](std::size_t t, std::size_t) {
+            return Largest{sweep_kernels::kernels().factor(sweep(part, phases[phase] + static_cast<int>(t)),
+                                                           diagonal, m_upper + first, m_lower + first)};
+          });
     }
   }
   return std::sqrt(static_cast<double>(stiffest.value));
@@ -242,8 +242,8 @@ void SplitSystem::solution(double alpha, double scale, Vectors s) {
 
 std::size_t SplitSystem::bytes() const {
   return identity_.bytes() + rest_.bytes() + pivots_.bytes() + excess_.bytes() + pivot_units_.bytes() +
-         excess_units_.bytes() + flat_.bytes() +
-         other_.bytes() + free_.capacity() * sizeof(free_[0]) + t_.bytes() + product_.bytes();
+         excess_units_.bytes() + flat_.bytes() + other_.bytes() + free_.capacity() * sizeof(free_[0]) +
+         t_.bytes() + product_.bytes();
 }
 
 }  // namespace muslin

@@ -54,8 +54,8 @@ StepContext step_context(Integrator integrator, const State& state, double dt) {
       context.anchor[v] = a * state.positions[v] - b * state.previous_positions[v];
     }
   }
-  context.inertial_prediction = context.anchor;
-  add(tau * a, state.velocities, context.inertial_prediction);
+  context.inertial_prediction.resize(context.anchor.size());
+  combine(context.anchor, tau * a, state.velocities, context.inertial_prediction);
   if (b != 0) add(-tau * b, state.previous_velocities, context.inertial_prediction);
   if (integrator == Integrator::symplectic_euler) {
     context.velocity_time = state.time;

@@ -31,7 +31,7 @@ struct Sweep {
   const float* units = nullptr;
   PackedMatrices pivots;  ///< M, lower triangular
   PackedMatrices excess;  ///< A − D, D = (MᵀM)⁻¹ of the M that is stored
-  Floats flat;                    ///< what neighbours read
+  Floats flat;            ///< what neighbours read
 };
 
 struct Diagonal {
@@ -46,8 +46,8 @@ struct Kernels {
   float (*factor)(const Sweep& sweep, const Diagonal& diagonal, Floats upper, Floats lower);
   /// r = F⁻¹ r; returns rᵀr.
   double (*solve_forward)(const Sweep& sweep, float* r);
-  /// x += alpha p, p = r + beta p, flat = t = F⁻ᵀ p, c = g + M e with g = p + M u and e = (A − D) t − u, u what
-  /// the later neighbours' couplings make of t. Returns pᵀg + tᵀe = tᵀH t.
+  /// x += alpha p, p = r + beta p, flat = t = F⁻ᵀ p, c = g + M e with g = p + M u and e = (A − D) t − u, u
+  /// what the later neighbours' couplings make of t. Returns pᵀg + tᵀe = tᵀH t.
   double (*direction)(const Sweep& sweep, float alpha, float beta, const float* r, float* x, float* p,
                       float* c);
   /// r −= alpha (g + F⁻¹ (e + further)) after `direction`; returns rᵀr. `further` by group, null if zero.
