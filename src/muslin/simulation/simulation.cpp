@@ -13,8 +13,8 @@
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
-#include "muslin/simulation/checkpoint.hpp"
 #include "muslin/simulation/energy_account.hpp"
+#include "muslin/simulation/saved_run.hpp"
 #include "muslin/solver/rigid_prediction.hpp"
 
 namespace muslin {
@@ -22,33 +22,10 @@ namespace {
 
 constexpr int max_halvings = 8;
 
-/// What a run has counted so far, beyond its state.
-struct Tally {
-  double work = 0, dissipated = 0;      ///< since the start [J]
-  std::vector<double> stored;           ///< energy of each potential, then of each load [J]
-  std::int64_t newton = 0, linear = 0;  ///< iterations of the frame in work
-  double residual = 0;                  ///< largest of the frame in work [m/s²]
-  double pressed = 0;                   ///< energy of contact [J]
-  double smallest_gap = std::numeric_limits<double>::infinity();  ///< of the frame in work [m]
-  int held_back = 0;                                              ///< at the end of the last step
-};
-
 /// A step that could not be solved even when halved as often as allowed.
 struct StepFailure {
   StepReport report;
 };
-
-/// Identifies a pin across runs: its anchors make sense only for the same vertices, caught at the same time.
-struct PinKey {
-  std::uint64_t hash = 0;
-  std::uint64_t vertices = 0;
-  bool operator==(const PinKey&) const = default;
-};
-PinKey pin_key(const Pin& pin) {
-  std::uint64_t hash = hash_bytes(pin.name.data(), pin.name.size());
-  hash = hash_bytes(pin.vertices.data(), pin.vertices.size() * sizeof(int), hash);
-  return {hash_bytes(&pin.from, sizeof pin.from, hash), pin.vertices.size()};
-}
 
 bool is_stored(EnergyRole role) { return role == EnergyRole::elastic || role == EnergyRole::potential; }
 
@@ -115,7 +92,6 @@ struct Simulation::Parts {
   void advance_by(double length, int halvings);
   void account(const StepContext& context, double length, const State& before,
                const std::vector<std::unique_ptr<Potential>>& acting_loads);
-  void restore_holds(const std::vector<PinKey>& pins, const Holds& saved);
   void restore_stored(const std::vector<std::uint64_t>& terms, const std::vector<double>& saved);
   std::vector<std::unique_ptr<Potential>> potentials_of_loads(const StepContext& context) const;
   std::vector<std::uint64_t> term_keys() const;
@@ -487,57 +463,21 @@ void Simulation::set_velocities(ConstVectors velocities) {
 
 std::vector<std::uint8_t> Simulation::checkpoint() const {
   const Parts& parts = *parts_;
-  ByteWriter out(
-      {model_fingerprint(*parts.model), parts.frame, parts.steps_done, parts.time().steps_per_frame});
-  const State& state = parts.state;
-  out.values(state.positions);
-  out.values(state.velocities);
-  out.values(state.previous_positions);
-  out.values(state.previous_velocities);
-  out.value(state.previous_dt);
-  out.value(state.time);
-  out.value(state.step);
-
-  std::vector<PinKey> pins;
-  for (const Pin& pin : parts.model->pins) pins.push_back(pin_key(pin));
-  out.values(pins);
-  out.values(parts.holds.holding);
-  out.values(parts.holds.anchors);
-
-  const Tally& tally = parts.tally;
-  out.value(tally.work);
-  out.value(tally.dissipated);
-  const std::vector<std::uint64_t> terms = parts.term_keys();
-  out.values(terms);
-  out.values(tally.stored);
-  out.value(tally.newton);
-  out.value(tally.linear);
-  out.value(tally.residual);
-  out.value(tally.pressed);
-  out.value(tally.smallest_gap);
-  out.value(tally.held_back);
-  const ContactMemory nothing;
-  const ContactMemory& contact = parts.guard ? parts.guard->memory() : nothing;
-  out.values(contact.slips);
-  out.values(contact.begin);
-  out.values(contact.end);
-  out.value(contact.margin);
-  out.value(contact.smallest_gap);
-
-  const Diagnostics& row = parts.diagnostics;
-  for (double number :
-       {row.kinetic, row.elastic, row.potential, row.work, row.dissipated, row.momentum.x(), row.momentum.y(),
-        row.momentum.z(), row.residual, row.max_stretch, row.min_distance, row.time})
-    out.value(number);
-  out.value(row.newton_iterations);
-  out.value(row.linear_iterations);
-  out.value(row.held_back);
-  return std::move(out).finish();
+  SavedRun saved;
+  saved.header = {model_fingerprint(*parts.model), parts.frame, parts.steps_done,
+                  parts.time().steps_per_frame};
+  saved.state = parts.state;
+  saved.pins = pin_keys(parts.model->pins);
+  saved.holds = parts.holds;
+  saved.terms = parts.term_keys();
+  saved.tally = parts.tally;
+  if (parts.guard) saved.contact = parts.guard->memory();
+  saved.diagnostics = parts.diagnostics;
+  return to_bytes(saved);
 }
 
 void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   Parts& parts = *parts_;
-  const std::size_t count = parts.model->vertex_count();
   const CheckpointHeader header = read_checkpoint_header(bytes);
   if (header.fingerprint != model_fingerprint(*parts.model)) {
     throw Error(ErrorKind::input,
@@ -550,95 +490,24 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
                             header.steps_per_frame, parts.time().steps_per_frame),
                 "resume from the checkpoint before it");
   }
-  ByteReader in(bytes);
-  State state;
-  state.positions = in.values<Vec3>();
-  state.velocities = in.values<Vec3>();
-  state.previous_positions = in.values<Vec3>();
-  state.previous_velocities = in.values<Vec3>();
-  const auto fits = [count](const std::vector<Vec3>& vectors) {
-    return vectors.size() == count || vectors.empty();
-  };
-  if (state.positions.size() != count || state.velocities.size() != count ||
-      !fits(state.previous_positions) || !fits(state.previous_velocities)) {
-    throw Error(ErrorKind::input, "the checkpoint has another number of vertices", "start the run anew");
-  }
-  state.previous_dt = in.value<double>();
-  state.time = in.value<double>();
-  state.step = in.value<std::int64_t>();
-
-  const auto pins = in.values<PinKey>();
-  Holds holds;
-  holds.holding = in.values<std::uint8_t>();
-  holds.anchors = in.values<Vec3>();
-
-  Tally tally;
-  tally.work = in.value<double>();
-  tally.dissipated = in.value<double>();
-  const auto terms = in.values<std::uint64_t>();
-  const auto stored = in.values<double>();
-  tally.newton = in.value<std::int64_t>();
-  tally.linear = in.value<std::int64_t>();
-  tally.residual = in.value<double>();
-  tally.pressed = in.value<double>();
-  tally.smallest_gap = in.value<double>();
-  tally.held_back = in.value<int>();
-  ContactMemory contact;
-  contact.slips = in.values<PairSlip>();
-  contact.begin = in.values<Vec3>();
-  contact.end = in.values<Vec3>();
-  contact.margin = in.value<double>();
-  contact.smallest_gap = in.value<double>();
-
-  Diagnostics row;
-  for (double* number :
-       {&row.kinetic, &row.elastic, &row.potential, &row.work, &row.dissipated, &row.momentum.x(),
-        &row.momentum.y(), &row.momentum.z(), &row.residual, &row.max_stretch, &row.min_distance, &row.time})
-    *number = in.value<double>();
-  row.newton_iterations = in.value<int>();
-  row.linear_iterations = in.value<int>();
-  row.held_back = in.value<int>();
-  row.frame = static_cast<int>(header.frame);
-
+  SavedRun saved = saved_run(bytes, parts.model->vertex_count());
   if (parts.guard) {
-    if (!parts.options.allow_tangled) refuse_crossings(*parts.model->contact, state.positions);
-    parts.guard->restore(std::move(contact));
-    if (parts.options.allow_tangled) parts.guard->leave_tangled(state.positions);
+    if (!parts.options.allow_tangled) refuse_crossings(*parts.model->contact, saved.state.positions);
+    parts.guard->restore(std::move(saved.contact));
+    if (parts.options.allow_tangled) parts.guard->leave_tangled(saved.state.positions);
   } else {
-    tally.work -= tally.pressed;
-    tally.pressed = 0;
+    saved.tally.work -= saved.tally.pressed;
+    saved.tally.pressed = 0;
   }
-  parts.state = std::move(state);
-  parts.tally = std::move(tally);
-  parts.frame = row.frame;
+  parts.holds = holds_of(parts.model->pins, saved);
+  parts.state = std::move(saved.state);
+  parts.tally = std::move(saved.tally);
+  parts.frame = saved.diagnostics.frame;
   parts.steps_done = static_cast<int>(header.steps);
   parts.wall_ms = 0;
-  parts.diagnostics = row;
-  parts.restore_holds(pins, holds);
-  parts.restore_stored(terms, stored);
-}
-
-void Simulation::Parts::restore_holds(const std::vector<PinKey>& pins, const Holds& saved) {
-  holds = Holds{};
-  if (saved.holding.size() != pins.size()) return;
-  // Every pin that is still there keeps its anchors; a new one takes hold in its first step.
-  for (const Pin& pin : model->pins) {
-    const PinKey key = pin_key(pin);
-    std::vector<Vec3> anchors(pin.vertices.size(), Vec3::Zero());
-    std::uint8_t holding = 0;
-    std::size_t first = 0;
-    for (std::size_t p = 0; p < pins.size(); ++p) {
-      if (pins[p] == key && first + key.vertices <= saved.anchors.size()) {
-        holding = saved.holding[p];
-        std::copy_n(saved.anchors.begin() + static_cast<std::ptrdiff_t>(first), key.vertices,
-                    anchors.begin());
-        break;
-      }
-      first += pins[p].vertices;
-    }
-    holds.holding.push_back(holding);
-    holds.anchors.insert(holds.anchors.end(), anchors.begin(), anchors.end());
-  }
+  parts.diagnostics = saved.diagnostics;
+  const std::vector<double> stored = std::move(parts.tally.stored);
+  parts.restore_stored(saved.terms, stored);
 }
 
 void Simulation::Parts::restore_stored(const std::vector<std::uint64_t>& terms,
