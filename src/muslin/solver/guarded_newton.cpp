@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "muslin/core/stopwatch.hpp"
+#include "muslin/solver/anderson.hpp"
 #include "muslin/solver/vector_operations.hpp"
 
 namespace muslin {
@@ -19,6 +20,9 @@ constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-3, fast_forcing = 
 /// on, to no more than so many times its iterations, where it was above the second.
 constexpr double calm_share = 0.02, restless_share = 0.1;
 constexpr int restless_times = 2;
+/// Iterations that Anderson's acceleration looks back over in a converged step, and those it leaves alone.
+constexpr std::size_t mixed_iterations = 5;
+constexpr int unmixed_iterations = 3;
 
 class GuardedStep {
  public:
@@ -36,7 +40,8 @@ class GuardedStep {
         count_(x.size()),
         scale_(function.dt() * function.dt()),
         with_contact_(problem) {
-    for (auto* vectors : {&workspace.x, &workspace.g, &workspace.s, &base_, &d_}) vectors->resize(count_);
+    for (auto* vectors : {&workspace.x, &workspace.g, &workspace.s, &base_, &d_, &last_move_, &mixed_step_})
+      vectors->resize(count_);
     with_contact_.potentials.push_back(nullptr);
   }
 
@@ -49,7 +54,12 @@ class GuardedStep {
     for (;;) {
       if (report.newton_iterations > 0 && held_back_ > 0) push_held();
       find_gradient();
-      const IncrementalPotential::Imbalance imbalance = function_.imbalance(workspace_.g);
+      IncrementalPotential::Imbalance imbalance = function_.imbalance(workspace_.g);
+      if (mixed_ && !(imbalance.norm < norm_)) {
+        take_back_mixing();
+        imbalance = function_.imbalance(workspace_.g);
+      }
+      norm_ = imbalance.norm;
       report.residual = imbalance.largest;
       report.worst_vertex = imbalance.vertex;
       report.held_back = held_back_;
@@ -87,7 +97,10 @@ class GuardedStep {
         for_each_vertex(count_, [&](std::size_t v) { workspace_.s[v] = -workspace_.s[v]; });
         return all_finite(workspace_.s) && move();
       };
-      if (try_to_move() || (workspace_.inner.project() && try_to_move())) continue;
+      if (try_to_move() || (workspace_.inner.project() && try_to_move())) {
+        if (!fast && report.newton_iterations > unmixed_iterations) mix();
+        continue;
+      }
       if (!fast) report.failure = "no step lowers the energy any further";
       break;
     }
@@ -145,6 +158,28 @@ class GuardedStep {
     });
   }
 
+  /// What is lagged makes Newton's method converge linearly: goes on to where the last iterations lead, as
+  /// far as the guard lets. Whether that was good the next gradient tells.
+  void mix() {
+    mixed_ = mixing_.mix(x_, last_move_, mixed_step_);
+    if (!mixed_) return;
+    for_each_vertex(count_, [&](std::size_t v) {
+      if (function_.held(v)) mixed_step_[v].setZero();
+    });
+    guard_.limit(x_, mixed_step_);
+    add(1, mixed_step_, x_);
+    value_ = function_.value_and_gradient(x_, base_);
+  }
+
+  /// The way that was safe there is safe back.
+  void take_back_mixing() {
+    mixed_ = false;
+    mixing_.clear();
+    for_each_vertex(count_, [&](std::size_t v) { x_[v] -= mixed_step_[v]; });
+    value_ = function_.value_and_gradient(x_, base_);
+    find_gradient();
+  }
+
   /// Whether a fast step may end after so many iterations.
   bool is_calm(int iterations) const {
     if (iterations == 0 || (iterations < settings_.fast_iterations && held_back_ > 0)) return false;
@@ -183,6 +218,7 @@ class GuardedStep {
         value_ = value;
         moved_ = 0;
         for (const Vec3& d : d_) moved_ = std::max(moved_, t * d.norm());
+        for_each_vertex(count_, [&](std::size_t v) { last_move_[v] = t * d_[v]; });
         return true;
       }
       const double parabola = -0.5 * slope * t * t / (change - t * slope);
@@ -208,6 +244,10 @@ class GuardedStep {
   int held_back_ = 0;
   double moved_ = 0;            ///< by the vertex that the last iteration moved farthest [m]
   std::vector<Vec3> base_, d_;  ///< the gradient without contact; the limited step
+  AndersonMixing mixing_{mixed_iterations};
+  bool mixed_ = false;  ///< whether x is where mixing led
+  double norm_ = 0;     ///< of the last gradient
+  std::vector<Vec3> last_move_, mixed_step_;
 };
 
 }  // namespace
