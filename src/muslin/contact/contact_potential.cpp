@@ -117,8 +117,10 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
       pair.normal = at.normal;
       pair.weights = at.weights;
       pair.begin.setZero();
-      if (friction.coefficient > 0 && gap < all[i].range) {
-        pair.friction = -friction.coefficient * pair.stiffness * contact_law(gap, all[i].range).slope;
+      const double coefficient =
+          surface_->friction(all[i].points[0], all[i].points[last_point(all[i])], friction.coefficient);
+      if (coefficient > 0 && gap < all[i].range) {
+        pair.friction = -coefficient * pair.stiffness * contact_law(gap, all[i].range).slope;
         Carried carried;
         carry(pair, at, x, lagged, carried);
         pair.begin = combined(all[i], pair.weights, x_start);

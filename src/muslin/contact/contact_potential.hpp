@@ -31,7 +31,7 @@
 namespace muslin {
 
 struct Friction {
-  double coefficient = 0;      ///< Coulomb's μ
+  double coefficient = 0;      ///< Coulomb's μ of bodies without one of their own
   double stick_length = 4e-6;  ///< slip at which friction is full [m]: ε_v dt, for instance 1 mm/s · 1/240 s
 };
 

@@ -25,6 +25,8 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
   }
   for (const ContactBody& body : bodies_) {
     if (!(body.radius >= 0)) throw Error(ErrorKind::usage, "a contact radius is negative", "give 0 or more");
+    if (body.friction && !(*body.friction >= 0))
+      throw Error(ErrorKind::usage, "a friction coefficient is negative", "give 0 or more");
     if (!(body.stiffness > 0))
       throw Error(ErrorKind::usage, "a contact stiffness is not positive", "give newtons per metre");
     if (*std::min_element(body.frame.begin(), body.frame.end()) < 0 &&

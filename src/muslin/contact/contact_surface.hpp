@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +29,8 @@ struct ContactBody {
   /// the corners of a tetrahedron that has volume, so that friction knows how its surface turns. −1: it does
   /// not.
   std::array<int, 4> frame = {-1, -1, -1, -1};
+  /// Coulomb's μ of this body; none: the one of all that have none. That of a pair is the geometric mean.
+  std::optional<double> friction = std::nullopt;
 };
 
 /// A half-space that nothing enters: gap = normal·(x − x_point). The plane moves with its point and does not
@@ -48,8 +52,8 @@ class ContactSurface {
   };
 
   /// Points are numbered 0 … body_of_point.size() − 1. A body's triangles use points of that body only.
-  /// Errors: usage, if an index is out of range, a triangle joins two bodies, a radius is negative, a
-  /// stiffness not positive, two bodies that may touch both have an infinite one, or a normal is not of
+  /// Errors: usage, if an index is out of range, a triangle joins two bodies, a radius or friction is
+  /// negative, a stiffness not positive, two bodies that may touch both have an infinite one, or a normal is not of
   /// length 1 (to 1e-9).
   ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
                  std::vector<ContactBody> bodies, std::vector<ContactPlane> planes = {});
@@ -74,6 +78,13 @@ class ContactSurface {
   /// Of a contact between the bodies of two points [N/m].
   double stiffness(int point_a, int point_b) const {
     return std::min(body_at(point_a).stiffness, body_at(point_b).stiffness);
+  }
+  /// Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that bodies of one μ have that μ between
+  /// them, and what is smooth slides on everything. `common` is that of bodies without one of their own.
+  double friction(int point_a, int point_b, double common) const {
+    const double a = body_at(point_a).friction.value_or(common),
+                 b = body_at(point_b).friction.value_or(common);
+    return a == b ? a : std::sqrt(a * b);
   }
   /// How many triangles share a point or an edge.
   int triangles_at_point(int p) const { return point_shares_[static_cast<std::size_t>(p)]; }

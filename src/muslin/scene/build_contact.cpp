@@ -72,6 +72,7 @@ class ContactBuilder {
     const double edge = mean_edge(body.mesh.positions, cut.triangles);
     ContactBody contact;
     contact.self_contact = settings.self_contact;
+    contact.friction = settings.friction;
     if (body.is_shell()) {
       const ShellMaterial& m = *settings.material.shell;
       contact.radius = settings.shell_thickness.value_or(std::min(thin, thin_share * edge)) / 2;
@@ -94,6 +95,7 @@ class ContactBuilder {
     ContactBody contact;
     contact.fixed = body.prescribed;
     contact.self_contact = false;
+    contact.friction = settings.friction;
     contact.stiffness = infinite;
     const auto first = static_cast<std::size_t>(body.first_vertex);
     if (body.prescribed) std::fill_n(prescribed_.begin() + body.first_vertex, body.vertex_count, 1);

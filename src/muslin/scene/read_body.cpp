@@ -199,6 +199,7 @@ BodySettings read_body(const TomlValue& value, std::size_t index, const std::fil
   body.velocity = table.vector("velocity", "m/s", Vec3::Zero());
   body.contact = table.boolean("contact", true);
   body.self_contact = table.boolean("self_contact", true);
+  body.friction = read_friction(table);
   body.colour = read_colour(table);
   return body;
 }

@@ -132,6 +132,7 @@ ColliderSettings read_collider(const TomlValue& value, std::size_t index) {
   collider.name = read_name(table, stem.empty() ? fmt::format("{}{}", shape, index) : stem);
   read_motion(table, collider);
   collider.contact = table.boolean("contact", true);
+  collider.friction = read_friction(table);
   collider.colour = read_colour(table);
   return collider;
 }
@@ -143,7 +144,7 @@ ContactSettings read_contact(const TomlTable& top) {
   contact.given = true;
   contact.place = table->place();
   if (table->has("distance")) contact.distance = table->number("distance", "m", {1e-9, 1e6, false});
-  contact.friction = table->number("friction", "", {0, 100, false}, contact.friction);
+  contact.friction = read_friction(*table).value_or(contact.friction);
   contact.mode = static_cast<ContactMode>(table->choice("mode", contact_mode_names(), 0));
   return contact;
 }

@@ -45,6 +45,11 @@ Vec3 read_scale(const TomlTable& table) {
   return Vec3::Constant(to_number(*value, name, "", Range::positive()));
 }
 
+std::optional<double> read_friction(const TomlTable& table) {
+  if (!table.has("friction")) return std::nullopt;
+  return table.number("friction", "", {0, 100, false});
+}
+
 std::optional<Vec3> read_colour(const TomlTable& table) {
   if (!table.has("colour")) return std::nullopt;
   const Vec3 colour = table.vector("colour", "sRGB 0 to 1");

@@ -26,6 +26,9 @@ std::string read_name(const TomlTable& table, const std::string& fallback);
 std::string read_path(const TomlTable& table, const char* key);
 /// A number or one per axis, all positive.
 Vec3 read_scale(const TomlTable& table);
+/// `friction`, Coulomb's coefficient, 0 to 100.
+std::optional<double> read_friction(const TomlTable& table);
+
 std::optional<Vec3> read_colour(const TomlTable& table);
 /// The direction under the key, of length 1.
 Vec3 read_direction(const TomlTable& table, const char* key, const char* example);

@@ -98,6 +98,7 @@ struct BodySettings {
   Vec3 velocity = Vec3::Zero();  ///< initial [m/s]
   bool contact = true;           ///< touches other bodies, colliders and itself
   bool self_contact = true;      ///< touches itself
+  std::optional<double> friction;  ///< Coulomb's μ; default: that of the scene
   std::optional<Vec3> colour;    ///< in pictures, sRGB 0…1; default: one of a palette
   Place place;
 };
@@ -126,7 +127,8 @@ struct ColliderSettings {
   Vec3 velocity = Vec3::Zero();   ///< initial, with a density [m/s]
   Vec3 angular_velocity = Vec3::Zero();  ///< initial, with a density, about its centre of mass [degrees/s]
   bool contact = true;
-  std::optional<Vec3> colour;  ///< in pictures, sRGB 0…1; default: grey
+  std::optional<double> friction;  ///< Coulomb's μ; default: that of the scene
+  std::optional<Vec3> colour;      ///< in pictures, sRGB 0…1; default: grey
   Place place;
 
   bool is_free() const { return density.has_value(); }
@@ -135,7 +137,7 @@ struct ColliderSettings {
 struct ContactSettings {
   bool given = false;              ///< whether the scene has the table
   std::optional<double> distance;  ///< d̂ [m]; default: see build_contact.hpp
-  double friction = 0.3;           ///< Coulomb's μ
+  double friction = 0.3;           ///< Coulomb's μ, of what has none of its own
   ContactMode mode = ContactMode::fast;
   Place place;
 };

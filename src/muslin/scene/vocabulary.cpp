@@ -15,7 +15,7 @@ std::vector<std::string> joined(std::vector<std::string> keys, const std::vector
 }
 
 std::vector<std::string> collider_keys(const std::vector<std::string>& more) {
-  return joined({"shape", "name", "keyframes", "contact", "colour"}, more);
+  return joined({"shape", "name", "keyframes", "contact", "friction", "colour"}, more);
 }
 
 /// Of those that turn and may have mass: all but the plane.
@@ -33,7 +33,7 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
       {"body", {"name",      "mesh",      "model",    "thickness",    "voxel_width",
                 "voxels",    "threshold", "bracing",  "mass",         "boundary_springs",
                 "rest_mesh", "warp",      "material", "translate",    "rotate",
-                "scale",     "velocity",  "contact",  "self_contact", "colour"}},
+                "scale",     "velocity",  "contact",  "self_contact", "friction",     "colour"}},
       {"body.material", joined({"base", "youngs_modulus", "shear_modulus"}, material_keys())},
       {"body.material of a shell", joined({"base"}, shell_material_keys())},
       {"collider.plane", collider_keys({"center", "normal"})},
