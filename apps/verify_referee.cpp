@@ -66,7 +66,7 @@ Referee::Referee(std::shared_ptr<const Model> model) : model_(std::move(model)) 
     };
     using Shape = ColliderSettings::Shape;
     if (settings.shape == Shape::plane) {
-      halves_.push_back({b, anchor(settings.center), settings.normal});
+      halves_.push_back({b, anchor(settings.center), anchor(settings.center + settings.normal)});
     } else if (settings.shape == Shape::sphere) {
       rounds_.push_back({b, anchor(settings.center), anchor(settings.center), settings.radius});
     } else if (settings.shape == Shape::capsule) {
@@ -129,12 +129,12 @@ std::size_t Referee::crossings(ConstVectors q) const {
     }
   }
   for (const Half& half : halves_) {
-    const Vec3 point = half.point.at(q);
+    const Vec3 point = half.point.at(q), normal = (half.above.at(q) - point).normalized();
     for (std::size_t p = 0; p + 2 * rounds_.size() < x.size(); ++p)
-      if (may_touch(half.body, body_of_point_[p]) && !(half.normal.dot(x[p] - point) > 0)) ++found;
+      if (may_touch(half.body, body_of_point_[p]) && !(normal.dot(x[p] - point) > 0)) ++found;
     for (const Round& round : rounds_)
       for (const Anchor& end : {round.a, round.b})
-        if (may_touch(half.body, round.body) && !(half.normal.dot(end.at(q) - point) > round.radius)) ++found;
+        if (may_touch(half.body, round.body) && !(normal.dot(end.at(q) - point) > round.radius)) ++found;
   }
   return found;
 }

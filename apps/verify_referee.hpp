@@ -35,8 +35,7 @@ class Referee {
   };
   struct Half {
     std::size_t body = 0;
-    Anchor point;
-    Vec3 normal;
+    Anchor point, above;  ///< above by the normal
   };
   bool may_touch(std::size_t body_a, std::size_t body_b) const;
 

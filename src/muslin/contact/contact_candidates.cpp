@@ -1,9 +1,11 @@
 #include "muslin/contact/contact_candidates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
+#include "muslin/contact/turning_plane.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 
@@ -26,8 +28,10 @@ std::array<int, 4> points_of(const ContactSurface& surface, PairKind kind, int f
       const auto &e = surface.edges()[a], &f = surface.edges()[b];
       return {e[0], e[1], f[0], f[1]};
     }
-    default:
-      return {first, surface.planes()[b].point, -1, -1};
+    default: {
+      const ContactPlane& plane = surface.planes()[b];
+      return {first, plane.point, plane.span[0], plane.span[1]};
+    }
   }
 }
 
@@ -43,7 +47,12 @@ std::vector<int> points_of_bodies(const ContactSurface& surface) {
 PairGeometry pair_geometry(const ContactSurface& surface, const ContactPair& pair, ConstVectors x) {
   const auto at = [&](std::size_t i) -> const Vec3& { return x[static_cast<std::size_t>(pair.points[i])]; };
   if (pair.kind == PairKind::point_plane) {
-    const Vec3& n = surface.planes()[static_cast<std::size_t>(pair.second)].normal;
+    const ContactPlane& plane = surface.planes()[static_cast<std::size_t>(pair.second)];
+    if (plane.turns()) {
+      const OverPlane over = over_plane(std::array{at(0), at(1), at(2), at(3)});
+      return {over.normal, over.distance, over.weights};
+    }
+    const Vec3& n = plane.normal;
     return {n, n.dot(at(0) - at(1)), {1, -1, 0, 0}};
   }
   const ClosestPoints c = pair.kind == PairKind::vertex_triangle
@@ -182,6 +191,7 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
 
 void ContactCandidates::add_near_plane(int plane) {
   const ContactPlane& half_space = surface_->planes()[static_cast<std::size_t>(plane)];
+  if (half_space.turns()) return add_near_turning_plane(plane);
   const auto carrier = static_cast<std::size_t>(half_space.point);
   const Vec3 &n = half_space.normal, extent = n.cwiseAbs();
   const double top =
@@ -192,6 +202,33 @@ void ContactCandidates::add_near_plane(int plane) {
     const double bottom = n.dot(lower_[p] + upper_[p]) / 2 - extent.dot(upper_[p] - lower_[p]) / 2;
     if (bottom - top > radius + surface_->radius_of(point) || p == carrier) continue;
     if (surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point)))
+      pairs_.push_back(make_pair(PairKind::point_plane, point, plane));
+  }
+}
+
+/// Boxes of half diagonal r around the plane's points a, b, c turn N = (b − a) × (c − a) by no more than
+/// |δN| = 2r (|b − a| + |c − a|) + 4r², and so n by no more than 2 |δN| / |N|.
+void ContactCandidates::add_near_turning_plane(int plane) {
+  const ContactPlane& half_space = surface_->planes()[static_cast<std::size_t>(plane)];
+  const auto middle = [&](int point) {
+    const auto p = static_cast<std::size_t>(point);
+    return Vec3((lower_[p] + upper_[p]) / 2);
+  };
+  const auto half = [&](int point) {
+    const auto p = static_cast<std::size_t>(point);
+    return (upper_[p] - lower_[p]).norm() / 2;
+  };
+  const Vec3 a = middle(half_space.point), u = middle(half_space.span[0]) - a,
+             v = middle(half_space.span[1]) - a, n = u.cross(v);
+  const double r = std::max({half(half_space.point), half(half_space.span[0]), half(half_space.span[1])});
+  const double turn = 2 * (2 * r * (u.norm() + v.norm()) + 4 * r * r) / n.norm();
+  const double radius = surface_->radius_of(half_space.point) + contact_distance_;
+  for (int point = 0; point < static_cast<int>(lower_.size()); ++point) {
+    if (!surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point))) continue;
+    const Vec3 away = middle(point) - a;
+    const double reach = half(point) + r;
+    const double least = n.dot(away) / n.norm() - reach - turn * (away.norm() + reach);
+    if (!(least > radius + surface_->radius_of(point)))
       pairs_.push_back(make_pair(PairKind::point_plane, point, plane));
   }
 }

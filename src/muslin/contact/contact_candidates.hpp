@@ -18,7 +18,8 @@
 namespace muslin {
 
 struct ContactPair {
-  std::array<int, 4> points{};  ///< vertex, triangle · a₀, a₁, b₀, b₁ · point, plane's point, −1, −1
+  std::array<int, 4> points{};  ///< vertex, triangle · a₀, a₁, b₀, b₁ · point, plane's point,
+                                ///< its span (−1, −1 if it does not turn)
   int first = 0, second = 0;  ///< the features: point, triangle · edges · point, plane
   PairKind kind = PairKind::vertex_triangle;
   double thickness = 0;  ///< the distance of the two midsurfaces when they touch [m]
@@ -30,7 +31,7 @@ struct ContactPair {
     return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(first) << 31 |
            static_cast<std::uint64_t>(second);
   }
-  int point_count() const { return kind == PairKind::point_plane ? 2 : 4; }
+  int point_count() const { return points[2] < 0 ? 2 : 4; }
 };
 
 /// The distance of a pair's features and its derivative: ∂d/∂xᵢ = weights[i] · normal.
@@ -81,6 +82,7 @@ class ContactCandidates {
   template <class Pair>
   void add_near(PairKind kind, std::span<const Pair> found, Near& out) const;
   void add_near_plane(int plane);
+  void add_near_turning_plane(int plane);
 
   std::shared_ptr<const ContactSurface> surface_;
   double contact_distance_;

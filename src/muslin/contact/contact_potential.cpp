@@ -9,6 +9,7 @@
 #include "muslin/contact/conservative_advancement.hpp"
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/contact/contact_hessian.hpp"
+#include "muslin/contact/turning_plane.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 
@@ -349,7 +350,7 @@ double ContactPotential::max_step(ConstVectors q, ConstVectors d) const {
                           const double gap = at.distance - pair.thickness,
                                        required = pair.thickness + 0.1 * gap;
                           double factor = 1;
-                          if (pair.kind == PairKind::point_plane) {
+                          if (pair.point_count() == 2) {
                             const double approach = -at.normal.dot(combined(pair, at.weights, u));
                             if (approach > 0.9 * gap) factor = 0.9 * gap / approach;
                           } else {
@@ -358,7 +359,9 @@ double ContactPotential::max_step(ConstVectors q, ConstVectors d) const {
                               from[k] = x[static_cast<std::size_t>(pair.points[k])];
                               by[k] = u[static_cast<std::size_t>(pair.points[k])];
                             }
-                            factor = safe_fraction(pair.kind, from, by, required, 0.01 * gap);
+                            factor = pair.kind == PairKind::point_plane
+                                         ? safe_fraction_over_plane(from, by, required)
+                                         : safe_fraction(pair.kind, from, by, required, 0.01 * gap);
                           }
                           if (factor < 1) smallest.value = std::min(smallest.value, factor);
                         }

@@ -41,7 +41,9 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
     }
   }
   for (const ContactPlane& plane : planes_) {
-    if (plane.point < 0 || plane.point >= points)
+    const auto exists = [points](int point) { return point >= 0 && point < points; };
+    const bool spanned = plane.span[0] >= 0 || plane.span[1] >= 0;
+    if (!exists(plane.point) || (spanned && (!exists(plane.span[0]) || !exists(plane.span[1]))))
       throw Error(ErrorKind::usage, "a contact plane has a point that does not exist", "check the index");
     if (!(std::fabs(plane.normal.norm() - 1) <= 1e-9))
       throw Error(ErrorKind::usage, "the normal of a contact plane is not of length 1", "normalise it");

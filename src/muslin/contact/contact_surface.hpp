@@ -33,11 +33,14 @@ struct ContactBody {
   std::optional<double> friction = std::nullopt;
 };
 
-/// A half-space that nothing enters: gap = normal·(x − x_point). The plane moves with its point and does not
-/// turn.
+/// A half-space that nothing enters: gap = normal·(x − x_point). The plane moves with its point.
 struct ContactPlane {
   int point = 0;                ///< of the surface, of a body of its own
-  Vec3 normal = Vec3(0, 1, 0);  ///< outward, of length 1
+  Vec3 normal = Vec3(0, 1, 0);  ///< outward, of length 1; of a plane that turns unused
+  /// Two more points of that body, −1: none. With them the plane turns: it goes through the three, and its
+  /// outward side is that of (span[0] − point) × (span[1] − point).
+  std::array<int, 2> span = {-1, -1};
+  bool turns() const { return span[0] >= 0; }
 };
 
 /// Immutable.

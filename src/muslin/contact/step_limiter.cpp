@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "muslin/contact/conservative_advancement.hpp"
+#include "muslin/contact/turning_plane.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 
@@ -86,6 +87,17 @@ struct StepLimiter::Work {
   /// How much of its step pair i may take.
   double safe_factor(std::size_t i) const {
     const ContactPair& pair = pairs[i];
+    const auto corners = [&](ConstVectors of) {
+      std::array<Vec3, 4> four;
+      for (std::size_t k = 0; k < 4; ++k) four[k] = of[static_cast<std::size_t>(pair.points[k])];
+      return four;
+    };
+    if (pair.kind == PairKind::point_plane && pair.point_count() == 4) {
+      const double distance = start[i].distance;
+      return distance <= 0
+                 ? 1
+                 : safe_fraction_over_plane(corners(x), corners(u), required_distance(pair, distance));
+    }
     if (pair.kind == PairKind::point_plane) {
       const PairGeometry& at = start[i];
       if (at.distance <= 0) return 1;
@@ -107,18 +119,17 @@ struct StepLimiter::Work {
     const PairGeometry& at = start.find(i);
     if (at.distance <= 0 || is_far(at.distance)) return 1;
     const double required = required_distance(pair, at.distance);
-    std::array<Vec3, 4> from, by;
-    for (std::size_t k = 0; k < 4; ++k) {
-      from[k] = x[static_cast<std::size_t>(pair.points[k])];
-      by[k] = u[static_cast<std::size_t>(pair.points[k])];
-    }
-    return safe_fraction(pair.kind, from, by, required, limits.gap_floor / 2);
+    return safe_fraction(pair.kind, corners(x), corners(u), required, limits.gap_floor / 2);
   }
 
   PairGeometry geometry_at(const ContactPair& pair, const PairGeometry& before_step, double time) const {
-    if (pair.kind == PairKind::point_plane) return before_step;
+    if (pair.point_count() == 2) return before_step;
     std::array<Vec3, 4> p;
     for (int i = 0; i < 4; ++i) p[static_cast<std::size_t>(i)] = position(pair, i) + time * step(pair, i);
+    if (pair.kind == PairKind::point_plane) {
+      const OverPlane over = over_plane(p);
+      return {over.normal, over.distance, over.weights};
+    }
     const ClosestPoints c = closest_points(pair.kind, p);
     return {c.difference / c.distance(), c.distance(), c.weights};
   }

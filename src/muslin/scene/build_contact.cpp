@@ -107,8 +107,16 @@ class ContactBuilder {
     }
     switch (settings.shape) {
       case Shape::plane: {
-        const int point = add_point(body, body.frame.centre);
-        planes_.push_back({point, settings.normal});
+        const Vec3 normal = start_of(body).linear() * settings.normal;
+        ContactPlane plane = {add_point(body, body.frame.centre), normal};
+        if (turns(settings.motion)) {
+          // Within the corners that carry them.
+          const double reach = body.frame.radii.x() / 2;
+          const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+          plane.span = {add_point(body, body.frame.centre + reach * u),
+                        add_point(body, body.frame.centre + reach * v)};
+        }
+        planes_.push_back(plane);
         break;
       }
       case Shape::sphere: {
@@ -133,6 +141,12 @@ class ContactBuilder {
         return;
     }
     finish_body(body, contact);
+  }
+
+  static bool turns(const Motion& motion) {
+    return std::any_of(motion.keys.begin(), motion.keys.end(), [&](const Motion::Key& key) {
+      return !key.rotate.isApprox(motion.keys.front().rotate, 1e-12);
+    });
   }
 
   /// The vertices that carry a round body, so that friction sees it turn.

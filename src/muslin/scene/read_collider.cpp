@@ -95,12 +95,6 @@ void read_motion(const TomlTable& table, ColliderSettings& collider) {
   if (collider.shape == Shape::mesh) read_sequence(table, collider);
   collider.motion.keys = read_motion(table, "collider.keyframes");
   if (table.has("pivot")) collider.pivot = table.vector("pivot", "m");
-  if (collider.shape == Shape::plane) {
-    for (const Motion::Key& key : collider.motion.keys) {
-      if (!key.rotate.isApprox(Eigen::Quaterniond::Identity(), 1e-12))
-        throw table.error("keyframes", "a plane does not turn", "use a box, or leave `rotate` out");
-    }
-  }
   if (table.has("density")) collider.density = table.number("density", "kg/m³", {1e-6, 1e9, false});
   if (collider.is_free() && !collider.motion.keys.empty()) {
     throw table.error("density", "`density` makes a body that moves by itself, `keyframes` say how it moves",

@@ -36,7 +36,7 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
                 "scale",     "velocity",  "contact",  "self_contact", "friction",     "colour"}},
       {"body.material", joined({"base", "youngs_modulus", "shear_modulus"}, material_keys())},
       {"body.material of a shell", joined({"base"}, shell_material_keys())},
-      {"collider.plane", collider_keys({"center", "normal"})},
+      {"collider.plane", collider_keys({"center", "normal", "pivot"})},
       {"collider.sphere", moving_keys({"center", "radius"})},
       {"collider.capsule", moving_keys({"points", "radius"})},
       {"collider.box", moving_keys({"center", "size", "rotate"})},
