@@ -1,5 +1,6 @@
 // Friction: bodies on a slope, a strip around a pole, a rolling ball.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -89,10 +90,10 @@ Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity
 }
 
 Simulation start_on_slope(const Experiment& experiment, const std::string& body, double degrees,
-                          double friction, int frame_rate) {
+                          double friction, int frame_rate, const std::vector<std::string>& overrides = {}) {
   experiment.box("block.obj", {0.1, 0.05, 0.1});
   experiment.level_sheet("patch.obj", 0.2, 0.2, 10);
-  return experiment.start(slope(degrees, friction, frame_rate) + body);
+  return experiment.start(slope(degrees, friction, frame_rate) + body, overrides);
 }
 
 constexpr double angle = 20;  // degrees; tan = 0.364
@@ -125,6 +126,76 @@ std::vector<Comparison> slides_down_a_slope() {
     const double expected = gravity * (std::sin(radians) - friction * std::cos(radians));
     numbers.push_back({fmt::format("acceleration of {} [m/s2]", name), expected,
                        centre(simulation, "body", true).x() - before, 0.02});
+  }
+  return numbers;
+}
+
+/// The bodies that stick and slip.
+const std::array bodies = {std::pair{"a rigid block", block}, std::pair{"cloth", patch}};
+
+/// A block of friction 0.8 on a slope of 0.05: together 0.2.
+std::vector<Comparison> friction_of_a_pair() {
+  const double radians = angle * std::numbers::pi / 180;
+  const Experiment experiment;
+  Simulation simulation = start_on_slope(experiment, block + "friction = 0.8\n", angle, 0.7, 60,
+                                         {"collider.slope.friction=0.05"});
+  advance(simulation, 30);
+  const double before = centre(simulation, "body", true).x();
+  advance(simulation, 60);
+  return {{"acceleration of a block [m/s2]", gravity * (std::sin(radians) - 0.2 * std::cos(radians)),
+           centre(simulation, "body", true).x() - before, 0.01}};
+}
+
+/// On a level floor, pulled sideways by a(t) of its weight per mass, a = μ g t for two seconds and then none:
+/// it stays until a reaches μ g at 1 s, slides by μ g (t − 1)³/6, is let go at v = μ g/2, slows down by μ g,
+/// and stops v²/(2 μ g) farther.
+std::vector<Comparison> sticks_slips_and_sticks() {
+  constexpr double friction = 0.3, most = friction * gravity;
+  std::vector<Comparison> numbers;
+  for (const auto& [name, body] : bodies) {
+    const Experiment experiment;
+    Simulation simulation = start_on_slope(
+        experiment, body, 0, friction, 60,
+        {fmt::format("force.0.keyframes=[{{time=0,value=[0,{0},0]}},{{time=2,value=[{1},{0},0]}},"
+                     "{{time=2.0001,value=[0,{0},0]}}]",
+                     -gravity, 2 * most)});
+    const auto at = [&](double time) {
+      advance(simulation, static_cast<int>(std::lround(60 * time)) - simulation.frame());
+      return centre(simulation, "body").x();
+    };
+    const double settled = at(0.25), held = at(0.95), slid = at(2), stopped = at(3), later = at(6);
+    numbers.push_back(
+        {fmt::format("slip of {} at 0.95 of the limit [m]", name), 0, held - settled, 1e-5, false});
+    numbers.push_back({fmt::format("way of {} while pulled [m]", name), most / 6, slid - settled, 0.02});
+    numbers.push_back({fmt::format("and until it stops [m]"), most / 8, stopped - slid, 0.02});
+    numbers.push_back({"and then [m]", 0, later - stopped, 1e-6, false});
+  }
+  return numbers;
+}
+
+/// A level plane that turns by w: what lies on it stays on it until it has turned by atan μ, and is then slid
+/// g/(w² cos) (φ − sin φ) when it has turned by φ more.
+std::vector<Comparison> slides_off_a_turning_plane() {
+  constexpr double friction = 0.3, degrees_per_second = 3;
+  const double speed = degrees_per_second * std::numbers::pi / 180, limit = std::atan(friction);
+  std::vector<Comparison> numbers;
+  for (const auto& [name, body] : bodies) {
+    const Experiment experiment;
+    Simulation simulation =
+        start_on_slope(experiment, body, 0, friction, 60,
+                       {fmt::format("collider.slope.keyframes=[{{time=0}},{{time=10,rotate=[0,0,{}]}}]",
+                                    -10 * degrees_per_second)});
+    const auto slid = [&](double turned) {
+      advance(simulation, static_cast<int>(std::lround(60 * turned / speed)) - simulation.frame());
+      const double now = speed * simulation.diagnostics().time;
+      return centre(simulation, "body").dot(Vec3(std::cos(now), -std::sin(now), 0));
+    };
+    const double settled = slid(0.05), held = slid(0.97 * limit), late = slid(limit + 0.1);
+    const double beyond = speed * simulation.diagnostics().time - limit;
+    numbers.push_back({fmt::format("slip of {} before atan mu [m]", name), 0, held - settled, 1e-4, false});
+    numbers.push_back({fmt::format("slip of {} beyond [m]", name),
+                       gravity / (speed * speed * std::cos(limit)) * (beyond - std::sin(beyond)),
+                       late - settled, 0.02});
   }
   return numbers;
 }
@@ -223,6 +294,12 @@ std::vector<VerifyCase> friction_cases() {
        false, holds_on_a_slope},
       {"slope-slides", "and slide with g (sin - mu cos) otherwise", "closed form", false,
        slides_down_a_slope},
+      {"friction-pairs", "friction of two bodies is the geometric mean of theirs", "closed form", false,
+       friction_of_a_pair},
+      {"stick-slip", "what is pulled ever harder stays, slips, and stops again when it is let go",
+       "closed form", false, sticks_slips_and_sticks},
+      {"turning-plane", "what lies on a plane that turns slides from atan mu on", "closed form", false,
+       slides_off_a_turning_plane},
       {"capstan", "a strip around half a pole slides when its loads differ by exp(mu pi)", "Euler, Eytelwein",
        true, capstan},
       {"rolling", "a ball rolls down a slope with 5/7 g sin, or slides", "closed form", false, rolling_ball},

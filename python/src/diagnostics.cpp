@@ -47,6 +47,9 @@ void bind_diagnostics(nb::module_& m) {
       .def_ro("potential", &Diagnostics::potential, "Stored in fields such as gravity [J].")
       .def_ro("work", &Diagnostics::work, "Done from outside since the start [J].")
       .def_ro("dissipated", &Diagnostics::dissipated, "Lost since the start [J].")
+      .def_ro(
+          "unbalanced", &Diagnostics::unbalanced,
+          "Work of what the solver left out of balance since the start [J]: by that much balance changed.")
       .def_prop_ro("balance", &Diagnostics::balance,
                    "kinetic + elastic + potential - work + dissipated [J]: stays what it was.")
       .def_prop_ro(
@@ -56,8 +59,10 @@ void bind_diagnostics(nb::module_& m) {
       .def_ro("linear_iterations", &Diagnostics::linear_iterations, "Of this frame.")
       .def_ro("residual", &Diagnostics::residual, "Largest of this frame [m/s²].")
       .def_ro("max_stretch", &Diagnostics::max_stretch, "Largest length over rest length.")
-      .def_ro("min_distance", &Diagnostics::min_distance,
-              "Smallest gap in contact [m]; infinity without contact.")
+      .def_ro(
+          "min_distance", &Diagnostics::min_distance,
+          "Smallest gap in contact [m]; infinity without contact, not above 0 while a tangled start has not "
+          "parted.")
       .def_ro("held_back", &Diagnostics::held_back,
               "Vertices moved along keyframes that something in their way holds back.")
       .def_ro("wall_ms", &Diagnostics::wall_ms, "Time that this frame took.")

@@ -62,7 +62,7 @@ int first_frame(std::optional<int> resume_from) {
 }
 
 RunResult run(const Scene& scene, const FilePath& directory, std::optional<int> frames, bool resume,
-              std::optional<int> resume_from, bool keep_states, const RunReport& progress,
+              std::optional<int> resume_from, bool keep_states, bool allow_tangled, const RunReport& progress,
               const Cancel& cancel) {
   if (frames && *frames < 0) throw Error(ErrorKind::usage, "frames is below 0", "give the last frame");
   RunOptions options;
@@ -71,6 +71,7 @@ RunResult run(const Scene& scene, const FilePath& directory, std::optional<int> 
   options.resume = resume || resume_from;
   options.resume_from = first_frame(resume_from);
   options.keep_states = keep_states;
+  options.allow_tangled = allow_tangled;
   Keeper keeper;
   if (progress) {
     options.report = [&](const RunProgress& now) {
@@ -246,13 +247,15 @@ void bind_run(nb::module_& m) {
       .def_ro("changes", &RunResult::changes, "Settings changed since the run that was resumed.")
       .def_ro("warnings", &RunResult::warnings, "Of the model.");
   m.def("run", &run, "scene"_a, "directory"_a, nb::kw_only(), "frames"_a = nb::none(), "resume"_a = false,
-        "resume_from"_a = nb::none(), "keep_states"_a = false, "progress"_a = nb::none(),
-        "cancel"_a = nb::none(),
+        "resume_from"_a = nb::none(), "keep_states"_a = false, "allow_tangled"_a = false,
+        "progress"_a = nb::none(), "cancel"_a = nb::none(),
         "Runs a scene and writes its run directory, as `muslin run` does, to the same bytes. frames: the "
         "last frame,\n"
         "else the scene's. resume: go on from the last checkpoint, if there is one; resume_from: from that "
         "of this\n"
-        "frame, which needs a run with keep_states. After Interrupted, KeyboardInterrupt, or an exception of "
+        "frame, which needs a run with keep_states. allow_tangled: start although surfaces cross, as "
+        "Simulation "
+        "has it; a\nrun that is resumed remembers. After Interrupted, KeyboardInterrupt, or an exception of "
         "a\n"
         "callback the run can be resumed.");
   bind_writer(m);

@@ -1,5 +1,7 @@
 """Contact from Python: colliders, crossings found and refused, what may be put where."""
 
+import json
+
 import numpy as np
 import pytest
 from conftest import grid_mesh
@@ -87,6 +89,17 @@ def test_a_start_that_crosses_is_listed_and_refused():
     tangled = muslin.Simulation(model, allow_tangled=True)
     tangled.advance()
     assert tangled.frame == 1
+
+
+def test_a_run_may_start_tangled_and_remembers_it(tmp_path):
+    scene = muslin.make_scene(drop_tables(height=0.2))
+    with pytest.raises(muslin.InputError, match="cross"):
+        muslin.run(scene, tmp_path / "refused", frames=1)
+    muslin.run(scene, tmp_path / "run", frames=1, allow_tangled=True)
+    assert json.loads((tmp_path / "run/run.json").read_text())["allow_tangled"] is True
+    assert muslin.Run(tmp_path / "run").diagnostics()["min_distance"][0] < 0
+    muslin.run(scene, tmp_path / "run", frames=2, resume=True)
+    assert muslin.Run(tmp_path / "run").frame_count == 3
 
 
 def test_a_collider_may_be_a_mesh_in_memory(tmp_path):

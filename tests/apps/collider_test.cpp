@@ -130,6 +130,17 @@ TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
   EXPECT_EQ(run(scratch, start).code, 3);
   start.emplace_back("--allow-tangled");
   EXPECT_EQ(run(scratch, start).code, 0);
+
+  // What crosses is said, and a resumed run remembers what it was allowed.
+  const auto json_of_run = [&] { return nlohmann::json::parse(bytes_of(scratch / "run" / "run.json")); };
+  EXPECT_EQ(json_of_run()["allow_tangled"], true);
+  const RunReader tangled(scratch / "run");
+  EXPECT_LT(tangled.diagnostics().front().min_distance, 0);
+  std::vector<std::string> resume = words(scratch, "run", 2);
+  resume.insert(resume.end(), {"--set", high, "--resume"});
+  EXPECT_EQ(run(scratch, resume).code, 0);
+  EXPECT_EQ(json_of_run()["allow_tangled"], true);
+  EXPECT_EQ(RunReader(scratch / "run").diagnostics().size(), 3u);
 }
 
 }  // namespace

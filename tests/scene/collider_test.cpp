@@ -117,6 +117,62 @@ scale = 2
   EXPECT_EQ(json["contact"]["mode"], "converged");
 }
 
+TEST_F(ColliderModel, FrictionIsTheScenesUnlessABodyHasItsOwn) {
+  const Model model = build(cloth + R"(friction = 0.8
+[contact]
+friction = 0.45
+[[collider]]
+shape = "plane"
+center = [0, -1, 0]
+friction = 0.05
+[[collider]]
+shape = "box"
+center = [0, -1, 0]
+size = [1, 1, 1]
+[[collider]]
+shape = "sphere"
+center = [0, 1, 0]
+radius = 0.1
+friction = 0
+)");
+  const ContactSurface& surface = *model.contact->surface;
+  EXPECT_EQ(model.contact->friction, 0.45);
+  const auto friction = [&](int body_a, int body_b) {
+    int a = 0, b = 0;
+    while (surface.body_of(a) != body_a) ++a;
+    while (surface.body_of(b) != body_b) ++b;
+    return surface.friction(a, b, model.contact->friction);
+  };
+  EXPECT_EQ(friction(0, 0), 0.8);
+  EXPECT_DOUBLE_EQ(friction(0, 1), 0.2);
+  EXPECT_DOUBLE_EQ(friction(0, 2), 0.6);
+  EXPECT_EQ(friction(2, 2), 0.45);
+  EXPECT_EQ(friction(0, 3), 0);
+  const auto json = nlohmann::json::parse(model.scene.resolved);
+  EXPECT_EQ(json["body"][0]["friction"], 0.8);
+  EXPECT_EQ(json["collider"][0]["friction"], 0.05);
+  EXPECT_FALSE(json["collider"][1].contains("friction"));
+  EXPECT_THAT(message(cloth + "friction = -0.1\n"), HasSubstr("`friction`"));
+}
+
+TEST_F(ColliderModel, APlaneThatTurnsGoesThroughThreePoints) {
+  const std::string floor = cloth + "[[collider]]\nshape = 'plane'\ncenter = [5, -1, 0]\nkeyframes = ";
+  const Model turning = build(floor + "[{ time = 0, rotate = [0, 0, 10] }, { time = 1 }]\n");
+  const ContactPlane& plane = turning.contact->surface->planes()[0];
+  ASSERT_TRUE(plane.turns());
+  const std::vector<Vec3> x = surface(turning);
+  const Vec3 a = x[static_cast<std::size_t>(plane.point)], b = x[static_cast<std::size_t>(plane.span[0])],
+             c = x[static_cast<std::size_t>(plane.span[1])];
+  const double angle = 10 * std::numbers::pi / 180;
+  const Vec3 normal(-std::sin(angle), std::cos(angle), 0);
+  EXPECT_LT(((b - a).cross(c - a).normalized() - normal).norm(), 1e-12);
+  EXPECT_NEAR(normal.dot(a - Vec3(5, -1, 0)), 0, 1e-12);  // it turns about its centre
+  // Turned once and for all is not turning.
+  const Model still = build(floor + "[{ time = 0, rotate = [0, 0, 10] }]\n");
+  EXPECT_FALSE(still.contact->surface->planes()[0].turns());
+  EXPECT_LT((still.contact->surface->planes()[0].normal - normal).norm(), 1e-12);
+}
+
 TEST_F(ColliderModel, FixedShapesAreBodiesWithoutMass) {
   const Model model = build(cloth +
                             "[[collider]]\nshape = 'box'\ncenter = [0, -1, 0]\nsize = [1, 1, 1]\n"
@@ -304,6 +360,8 @@ TEST_F(ColliderModel, WrongCollidersAreErrorsThatSayWhatToDo) {
       {"shape = 'sphere'\nradius = 1\nsize = [1, 1, 1]\n", "unknown key `size`"},
       {"shape = 'plane'\nnormal = [0, 0, 0]\n", "`normal` has no direction"},
       {"shape = 'plane'\ndensity = 1\n", "unknown key `density`"},
+      {"shape = 'plane'\nfriction = 'ice'\n", "`friction`"},
+      {"shape = 'plane'\npivot = [0, 0, 0]\n", "`pivot` stands without `keyframes`"},
       {"shape = 'box'\n", "has no `size`"},
       {"shape = 'box'\nsize = [1, 0, 1]\n", "`size`"},
       {"shape = 'capsule'\nradius = 1\n", "give the ends of its axis"},

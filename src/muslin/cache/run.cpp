@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/cache/run_files.hpp"
 #include "muslin/cache/run_writer.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/scene/model.hpp"
@@ -49,7 +50,8 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     if (options.report) options.report(now);
   };
   const auto model = std::make_shared<const Model>(build_model(scene, building));
-  Simulation simulation(model, {options.allow_tangled});
+  const bool tangled = options.allow_tangled || (options.resume && is_tangled_run(options.directory));
+  Simulation simulation(model, {.allow_tangled = tangled});
   RunWriter writer(options.directory, simulation, total, options.resume,
                    {options.keep_states, options.resume_from});
 

@@ -24,9 +24,11 @@ struct RunOptions {
   std::vector<std::string> overrides;  ///< KEY=VALUE, as read_scene takes them
   int frames = -1;                     ///< last frame; −1: as the scene says
   bool resume = false;                 ///< go on from the last checkpoint, if there is one
-  int resume_from = -1;        ///< with `resume`: go back to this frame and on from there; −1: the last
-  bool allow_tangled = false;  ///< start although surfaces cross, which are free until they part
-  bool keep_states = false;    ///< keep the checkpoint of every frame, so that any can be resumed from
+  int resume_from = -1;  ///< with `resume`: go back to this frame and on from there; −1: the last
+  /// Start although surfaces cross, which are free until they part. A run remembers it: it need not be said
+  /// again to resume.
+  bool allow_tangled = false;
+  bool keep_states = false;  ///< keep the checkpoint of every frame, so that any can be resumed from
   /// Called after each stage, step and frame, from the calling thread.
   std::function<void(const RunProgress&)> report;
   /// Polled before each step. When true: a checkpoint is written, the run is marked `interrupted`, and

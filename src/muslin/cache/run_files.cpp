@@ -46,11 +46,24 @@ std::vector<CheckpointFile> list_checkpoints(const fs::path& run) {
   return found;
 }
 
-bool is_run(const fs::path& directory) {
+namespace {
+
+/// run.json of a run; null if there is none.
+nlohmann::json summary(const fs::path& directory) {
   std::error_code code;
-  if (!fs::is_regular_file(directory / "run.json", code)) return false;
-  const auto json = nlohmann::json::parse(read_file(directory / "run.json"), nullptr, false);
-  return json.is_object() && json.contains("muslin");
+  if (!fs::is_regular_file(directory / "run.json", code)) return nullptr;
+  nlohmann::json json = nlohmann::json::parse(read_file(directory / "run.json"), nullptr, false);
+  return json.is_object() && json.contains("muslin") ? json : nullptr;
+}
+
+}  // namespace
+
+bool is_run(const fs::path& directory) { return !summary(directory).is_null(); }
+
+bool is_tangled_run(const fs::path& directory) {
+  const nlohmann::json run = summary(directory);
+  const auto at = run.is_null() ? run.end() : run.find("allow_tangled");
+  return at != run.end() && at->is_boolean() && at->get<bool>();
 }
 
 namespace {

@@ -27,6 +27,8 @@ std::vector<CheckpointFile> list_checkpoints(const std::filesystem::path& run);
 
 /// True if the directory holds a run of muslin (finished or not).
 bool is_run(const std::filesystem::path& directory);
+/// True if it holds a run that was begun although surfaces crossed, as run.json says.
+bool is_tangled_run(const std::filesystem::path& directory);
 
 /// Removes files that a process killed while writing left half done. Errors: file.
 void remove_unfinished_files(const std::filesystem::path& directory, const std::vector<std::string>& bodies);

@@ -250,6 +250,7 @@ void RunWriter::Parts::compare_scene(const Json& run) {
     changes.push_back(setting);
     const bool of_collider =
         setting.starts_with("collider") && setting.find("keyframes") == std::string::npos;
+    if (setting.ends_with(".friction")) continue;
     if (setting.starts_with("body") || of_collider) bodies.push_back(setting);
   }
   if (!bodies.empty()) {
@@ -343,6 +344,7 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
     run["bodies"].push_back(entry);
   }
   run["warnings"] = model.warnings;
+  if (simulation.options().allow_tangled) run["allow_tangled"] = true;
   run["scene"] = parsed_scene(model);
   run["machine"] = {{"processor", processor()},
                     {"cores", std::thread::hardware_concurrency()},

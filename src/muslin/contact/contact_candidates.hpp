@@ -20,7 +20,7 @@ namespace muslin {
 struct ContactPair {
   std::array<int, 4> points{};  ///< vertex, triangle · a₀, a₁, b₀, b₁ · point, plane's point,
                                 ///< its span (−1, −1 if it does not turn)
-  int first = 0, second = 0;  ///< the features: point, triangle · edges · point, plane
+  int first = 0, second = 0;    ///< the features: point, triangle · edges · point, plane
   PairKind kind = PairKind::vertex_triangle;
   double thickness = 0;  ///< the distance of the two midsurfaces when they touch [m]
   double range = 0;      ///< the contact distance d̂ of this pair [m]: contact energy acts below this gap

@@ -191,6 +191,13 @@ void ContactGuard::end(ConstVectors q) {
   measure(q);
   memory_.smallest_gap = distances_.smallest_gap();
   if (!tangled_.empty()) leave_tangled(q);
+  // What is free is no candidate. Where triangles cross their distance is 0.
+  const ContactSurface& surface = *model_->surface;
+  const auto radius = [&](int t) {
+    return surface.radius_of(surface.triangles()[static_cast<std::size_t>(t)][0]);
+  };
+  for (const auto& [first, second] : tangled_)
+    memory_.smallest_gap = std::min(memory_.smallest_gap, 0.0 - (radius(first) + radius(second)));
 }
 
 /// Pairs of triangles that cross at q.

@@ -24,7 +24,8 @@ struct ContactMemory {
   std::vector<PairSlip> slips;   ///< by ascending key
   std::vector<Vec3> begin, end;  ///< what candidates were found for, #P by 3 [m]; empty: not yet
   double margin = 0;             ///< by which their boxes are wider [m]
-  double smallest_gap =          ///< at the end of the last step [m]; infinite beyond d̂
+  double smallest_gap =          ///< at the end of the last step [m]; infinite beyond d̂; −thickness
+                                 ///< where triangles cross
       std::numeric_limits<double>::infinity();
 };
 

@@ -56,8 +56,8 @@ class ContactSurface {
 
   /// Points are numbered 0 … body_of_point.size() − 1. A body's triangles use points of that body only.
   /// Errors: usage, if an index is out of range, a triangle joins two bodies, a radius or friction is
-  /// negative, a stiffness not positive, two bodies that may touch both have an infinite one, or a normal is not of
-  /// length 1 (to 1e-9).
+  /// negative, a stiffness not positive, two bodies that may touch both have an infinite one, or a normal is
+  /// not of length 1 (to 1e-9).
   ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
                  std::vector<ContactBody> bodies, std::vector<ContactPlane> planes = {});
 

@@ -18,7 +18,8 @@ bool keeps(std::span<const Vec3, 4> x, std::span<const Vec3, 4> u, double t, dou
   const std::array<Vec3, 3> n = {b0.cross(c0), (b0.cross(c1) + b1.cross(c0)) / 2, b1.cross(c1)};
   const double least = std::min({n[0].dot(p0), (n[0].dot(p1) + 2 * n[1].dot(p0)) / 3,
                                  (2 * n[1].dot(p1) + n[2].dot(p0)) / 3, n[2].dot(p1)});
-  return least >= required * std::sqrt(std::max({n[0].squaredNorm(), n[1].squaredNorm(), n[2].squaredNorm()}));
+  return least >=
+         required * std::sqrt(std::max({n[0].squaredNorm(), n[1].squaredNorm(), n[2].squaredNorm()}));
 }
 
 }  // namespace

@@ -198,7 +198,8 @@ BuiltCollider build_collider(const Scene& scene, const ColliderSettings& setting
   } else {
     body.frame = box_frame(body.mesh.bounds());
     built.motion.motion = settings.motion;
-    built.motion.motion.pivot = settings.pivot.value_or(settings.shape == Shape::plane ? settings.center : body.frame.centre);
+    built.motion.motion.pivot =
+        settings.pivot.value_or(settings.shape == Shape::plane ? settings.center : body.frame.centre);
     const Eigen::Isometry3d start = built.motion.motion.at(0);
     for (Vec3& x : body.mesh.positions) x = start * x;
     body.frame.centre = start * body.frame.centre;

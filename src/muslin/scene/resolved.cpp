@@ -81,7 +81,7 @@ void add_shell(const BodySettings& b, Json& json) {
   json["material"] = shell_material(b.material);
 }
 
-Json body(const BodySettings& b, const ContactSettings& common) {
+Json body(const BodySettings& b) {
   Json json = {{"name", b.name}, {"mesh", b.mesh}, {"model", name_of(body_model_names(), b.model)}};
   if (b.model == BodyModel::shell) {
     add_shell(b, json);
@@ -94,7 +94,7 @@ Json body(const BodySettings& b, const ContactSettings& common) {
   json["velocity"] = vector(b.velocity);
   json["contact"] = b.contact;
   json["self_contact"] = b.self_contact;
-  json["friction"] = b.friction.value_or(common.friction);
+  if (b.friction) json["friction"] = *b.friction;
   if (b.colour) json["colour"] = vector(*b.colour);
   return json;
 }
@@ -125,7 +125,7 @@ void add_shape(const ColliderSettings& c, Json& json) {
   if (c.shape == Shape::mesh) json["scale"] = vector(c.scale);
 }
 
-Json collider(const ColliderSettings& c, const ContactSettings& common) {
+Json collider(const ColliderSettings& c) {
   Json json = {{"name", c.name}, {"shape", name_of(collider_shape_names(), c.shape)}};
   add_shape(c, json);
   if (c.is_free()) {
@@ -140,7 +140,7 @@ Json collider(const ColliderSettings& c, const ContactSettings& common) {
     json["keyframes"] = keyframes(c.motion);
   }
   json["contact"] = c.contact;
-  json["friction"] = c.friction.value_or(common.friction);
+  if (c.friction) json["friction"] = *c.friction;
   if (c.colour) json["colour"] = vector(*c.colour);
   return json;
 }
@@ -206,8 +206,8 @@ std::string resolved_json(const Scene& scene) {
                     {"tolerance", scene.solver.tolerance},
                     {"max_iterations", scene.solver.max_iterations},
                     {"linear_tolerance", scene.solver.linear_tolerance}};
-  json["body"] = list(scene.bodies, [&](const BodySettings& b) { return body(b, scene.contact); });
-  json["collider"] = list(scene.colliders, [&](const ColliderSettings& c) { return collider(c, scene.contact); });
+  json["body"] = list(scene.bodies, body);
+  json["collider"] = list(scene.colliders, collider);
   json["contact"] = contact(scene.contact);
   json["pin"] = list(scene.pins, pin);
   json["force"] = list(scene.forces, force);

@@ -95,11 +95,11 @@ struct BodySettings {
   Vec3 translate = Vec3::Zero();  ///< [m]
   Vec3 rotate = Vec3::Zero();     ///< Euler angles about x, then y, then z [degrees]
   Vec3 scale = Vec3::Ones();
-  Vec3 velocity = Vec3::Zero();  ///< initial [m/s]
-  bool contact = true;           ///< touches other bodies, colliders and itself
-  bool self_contact = true;      ///< touches itself
+  Vec3 velocity = Vec3::Zero();    ///< initial [m/s]
+  bool contact = true;             ///< touches other bodies, colliders and itself
+  bool self_contact = true;        ///< touches itself
   std::optional<double> friction;  ///< Coulomb's μ; default: that of the scene
-  std::optional<Vec3> colour;    ///< in pictures, sRGB 0…1; default: one of a palette
+  std::optional<Vec3> colour;      ///< in pictures, sRGB 0…1; default: one of a palette
   Place place;
 };
 

@@ -9,7 +9,7 @@ namespace muslin {
 namespace {
 
 constexpr std::array<char, 8> magic = {'M', 'U', 'S', 'L', 'I', 'N', 'C', 'P'};
-constexpr std::uint64_t version = 2;
+constexpr std::uint64_t version = 3;
 
 struct Preamble {
   std::array<char, 8> magic;

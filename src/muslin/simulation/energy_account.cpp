@@ -92,8 +92,10 @@ EnergyFlow energy_flow(const SolvedStep& step) {
   const std::vector<std::uint8_t>& turned = step.context->turned;
   const double tau = step.context->dt;
   struct Sums {
-    double loss = 0, reaction = 0;
-    Sums operator+(const Sums& other) const { return {loss + other.loss, reaction + other.reaction}; }
+    double loss = 0, reaction = 0, residual = 0;
+    Sums operator+(const Sums& other) const {
+      return {loss + other.loss, reaction + other.reaction, residual + other.residual};
+    }
   };
   const Sums sums = parallel_sum(count, grain, Sums{}, [&](std::size_t begin, std::size_t end) {
     Sums sum;
@@ -109,12 +111,13 @@ EnergyFlow energy_flow(const SolvedStep& step) {
       const Vec3 inertia = step.masses[v] * acceleration;
       sum.loss += euler ? 0.5 * step.masses[v] * (v1 - v0).squaredNorm()
                         : inertia.dot(displacement[v]) - 0.5 * step.masses[v] * (v1 - v0).dot(v1 + v0);
-      if (step.fixed[v]) sum.reaction += (inertia + total[v]).dot(displacement[v]);
+      (step.fixed[v] ? sum.reaction : sum.residual) += (inertia + total[v]).dot(displacement[v]);
     }
     return sum;
   });
   flow.dissipated += sums.loss;
   flow.work += sums.reaction;
+  flow.unbalanced = sums.residual;
   return flow;
 }
 

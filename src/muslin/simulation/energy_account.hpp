@@ -43,6 +43,7 @@ struct SolvedStep {
 struct EnergyFlow {
   double work = 0;        ///< done by loads and by held vertices that moved
   double dissipated = 0;  ///< taken by damping and by the integrator (which may also give: then < 0)
+  double unbalanced = 0;  ///< work of the forces at free vertices that the solver left out of balance
 };
 
 /// The flow of one step. The line integrals of stored energies are taken by quadrature of their gradients,

@@ -34,6 +34,7 @@ std::vector<std::uint8_t> to_bytes(const SavedRun& saved) {
   const Tally& tally = saved.tally;
   out.value(tally.work);
   out.value(tally.dissipated);
+  out.value(tally.unbalanced);
   out.values(saved.terms);
   out.values(tally.stored);
   out.value(tally.newton);
@@ -51,8 +52,8 @@ std::vector<std::uint8_t> to_bytes(const SavedRun& saved) {
 
   const Diagnostics& row = saved.diagnostics;
   for (double number :
-       {row.kinetic, row.elastic, row.potential, row.work, row.dissipated, row.momentum.x(), row.momentum.y(),
-        row.momentum.z(), row.residual, row.max_stretch, row.min_distance, row.time})
+       {row.kinetic, row.elastic, row.potential, row.work, row.dissipated, row.unbalanced, row.momentum.x(),
+        row.momentum.y(), row.momentum.z(), row.residual, row.max_stretch, row.min_distance, row.time})
     out.value(number);
   out.value(row.newton_iterations);
   out.value(row.linear_iterations);
@@ -87,6 +88,7 @@ SavedRun saved_run(std::span<const std::uint8_t> bytes, std::size_t vertices) {
   Tally& tally = saved.tally;
   tally.work = in.value<double>();
   tally.dissipated = in.value<double>();
+  tally.unbalanced = in.value<double>();
   saved.terms = in.values<std::uint64_t>();
   tally.stored = in.values<double>();
   tally.newton = in.value<std::int64_t>();
@@ -103,9 +105,9 @@ SavedRun saved_run(std::span<const std::uint8_t> bytes, std::size_t vertices) {
   saved.contact.smallest_gap = in.value<double>();
 
   Diagnostics& row = saved.diagnostics;
-  for (double* number :
-       {&row.kinetic, &row.elastic, &row.potential, &row.work, &row.dissipated, &row.momentum.x(),
-        &row.momentum.y(), &row.momentum.z(), &row.residual, &row.max_stretch, &row.min_distance, &row.time})
+  for (double* number : {&row.kinetic, &row.elastic, &row.potential, &row.work, &row.dissipated,
+                         &row.unbalanced, &row.momentum.x(), &row.momentum.y(), &row.momentum.z(),
+                         &row.residual, &row.max_stretch, &row.min_distance, &row.time})
     *number = in.value<double>();
   row.newton_iterations = in.value<int>();
   row.linear_iterations = in.value<int>();

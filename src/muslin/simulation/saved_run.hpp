@@ -18,6 +18,7 @@ namespace muslin {
 /// What a run has counted so far, beyond its state.
 struct Tally {
   double work = 0, dissipated = 0;      ///< since the start [J]
+  double unbalanced = 0;                ///< since the start [J]
   std::vector<double> stored;           ///< energy of each potential, then of each load [J]
   std::int64_t newton = 0, linear = 0;  ///< iterations of the frame in work
   double residual = 0;                  ///< largest of the frame in work [m/s²]

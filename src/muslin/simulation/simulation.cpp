@@ -295,6 +295,7 @@ void Simulation::Parts::account(const StepContext& context, double length, const
       {model->scene.solver.integrator, length, &context, &before, &state, model->masses, fixed, acts});
   tally.work += flow.work;
   tally.dissipated += flow.dissipated;
+  tally.unbalanced += flow.unbalanced;
 }
 
 void Simulation::Parts::describe_state(Diagnostics& row) const {
@@ -307,6 +308,7 @@ void Simulation::Parts::describe_state(Diagnostics& row) const {
   row.elastic += tally.pressed;
   row.work = tally.work;
   row.dissipated = tally.dissipated;
+  row.unbalanced = tally.unbalanced;
   row.momentum = total_momentum(model->masses, state.velocities);
   row.max_stretch = model->bodies.empty() ? 1 : 0;
   for (const Body& body : model->bodies)
@@ -392,6 +394,7 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 const Model& Simulation::model() const { return *parts_->model; }
+const SimulationOptions& Simulation::options() const { return parts_->options; }
 const State& Simulation::state() const { return parts_->state; }
 int Simulation::frame() const { return parts_->frame; }
 int Simulation::steps_done() const { return parts_->steps_done; }

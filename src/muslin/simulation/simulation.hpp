@@ -27,8 +27,13 @@ struct Diagnostics {
   int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
   double residual = 0;                               ///< largest of this frame [m/s²]
   double max_stretch = 1;  ///< largest length / rest length of a spring, or of a shell in any direction
+  /// Work of what is out of balance at free vertices since the start: the steps' residual forces times
+  /// displacements [J]. By that much balance() has changed.
+  double unbalanced = 0;
   /// Smallest gap between surfaces, thickness taken off, at the ends of all steps of the frame [m]; infinity
-  /// where it is more than the contact distance, or nothing can touch.
+  /// where it is more than the contact distance, or nothing can touch. Not above 0 only while something is
+  /// still as it was in a start that was allowed to be tangled: where triangles cross, at distance 0, it is
+  /// −thickness, in a ball or beneath a plane minus the depth.
   double min_distance = 0;
   int held_back = 0;   ///< vertices moved along keyframes that something in their way holds back
   double wall_ms = 0;  ///< time this frame took
@@ -58,6 +63,7 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
 
   const Model& model() const;
+  const SimulationOptions& options() const;
   const State& state() const;
   int frame() const;                       ///< the last finished frame
   int steps_done() const;                  ///< steps of the frame in work; 0 unless it was interrupted
