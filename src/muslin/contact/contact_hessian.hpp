@@ -32,6 +32,7 @@ class ContactHessian : public Potential {
   void add_gradient(ConstVectors q, Vectors g) const override { add_hessian_product(q, q, g); }
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
+  void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;
 
  private:
   struct Entry {

@@ -331,7 +331,7 @@ void ContactPotential::add_diagonal_blocks(ConstVectors q, std::span<Mat3> block
 }
 
 void ContactPotential::linearize(ConstVectors q, Linearization& into, std::size_t first) const {
-  into.add_general(std::make_shared<Hessian>(*this, q), first, q);
+  Hessian(*this, q).linearize(q, into, first);
 }
 
 double ContactPotential::max_step(ConstVectors q, ConstVectors d) const {

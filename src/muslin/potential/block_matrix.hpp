@@ -13,9 +13,6 @@
 
 namespace muslin {
 
-/// Four floats in a register.
-using Float4 = float __attribute__((vector_size(16)));
-
 /// Which blocks there are: those of every pair of vertices of an element, and the diagonal.
 class BlockPattern {
  public:

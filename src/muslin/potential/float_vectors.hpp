@@ -13,6 +13,9 @@
 
 namespace muslin {
 
+/// Four floats in a register.
+using Float4 = float __attribute__((vector_size(16)));
+
 /// Uninitialised memory for large arrays, aligned to cache lines; in pages of 2 MB where the system has
 /// them, because the lines along the slow axes of a lattice touch a new small page at every vertex.
 template <class T>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <utility>
 
 #include "muslin/core/parallel.hpp"
 #include "muslin/potential/potential.hpp"
@@ -21,7 +20,7 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   sets_.clear();
   matrices_.clear();
   generals_.clear();
-  owned_.clear();
+  relative_count_ = 0;
   identity_.resize(masses.size());
   for (std::size_t v = 0; v < masses.size(); ++v) identity_.data()[v] = static_cast<float>(masses[v]);
 }
@@ -58,10 +57,11 @@ void Linearization::add_general(const Potential& potential, std::size_t first, C
   generals_.push_back({&potential, first, x});
 }
 
-void Linearization::add_general(std::shared_ptr<const Potential> potential, std::size_t first,
-                                ConstVectors x) {
-  owned_.push_back(std::move(potential));
-  add_general(*owned_.back(), first, x);
+RelativeStiffness& Linearization::relative_stiffness(std::size_t first, std::size_t count) {
+  if (relative_count_ == relatives_.size()) relatives_.push_back(std::make_unique<RelativeStiffness>());
+  RelativeStiffness& relative = *relatives_[relative_count_++];
+  relative.reset(first, count);
+  return relative;
 }
 
 void Linearization::cover_gap(std::size_t begin, std::size_t end) {
@@ -97,6 +97,7 @@ void Linearization::finish() {
   std::erase_if(matrix_storage_, [&](const auto& m) {
     return std::find(matrices_.begin(), matrices_.end(), m.get()) == matrices_.end();
   });
+  for (std::size_t i = 0; i < relative_count_; ++i) relatives_[i]->finish();
   if (has_rest()) find_rest_diagonal();
 }
 
@@ -108,6 +109,10 @@ void Linearization::find_rest_diagonal() {
   for (const BlockMatrix* matrix : matrices_) {
     const auto first = static_cast<std::ptrdiff_t>(matrix->first());
     matrix->add_diagonal(u + first, l + first);
+  }
+  for (std::size_t i = 0; i < relative_count_; ++i) {
+    const auto first = static_cast<std::ptrdiff_t>(relatives_[i]->first());
+    relatives_[i]->add_diagonal(u + first, l + first);
   }
   if (generals_.empty()) return;
   blocks_.assign(size(), Mat3::Zero());
@@ -136,14 +141,37 @@ double Linearization::add_rest_product(Floats p, Floats y) {
     const auto first = static_cast<std::ptrdiff_t>(matrix->first());
     sum += matrix->add_product(p + first, y + first);
   }
-  if (generals_.empty()) return sum;
+  if (!has_loose()) return sum;
+  from_.resize(size());
+  into_.resize(size());
+  parallel_for(size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      from_.data()[v] = Float4{p.x[v], p.y[v], p.z[v], 0};
+      into_.data()[v] = Float4{0, 0, 0, 0};
+    }
+  });
+  sum += add_loose_product(from_.data(), into_.data());
+  parallel_for(size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const Float4 f = into_.data()[v];
+      y.x[v] += f[0], y.y[v] += f[1], y.z[v] += f[2];
+    }
+  });
+  return sum;
+}
 
+double Linearization::add_loose_product(const Float4* p, Float4* y) {
+  double sum = 0;
+  for (std::size_t i = 0; i < relative_count_; ++i)
+    sum += relatives_[i]->add_product(p + relatives_[i]->first(), y + relatives_[i]->first());
+  if (generals_.empty()) return sum;
   p_.resize(size());
   y_.resize(size());
   parallel_for(size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) p_[v] = Vec3(p.x[v], p.y[v], p.z[v]);
-    std::fill(y_.begin() + static_cast<std::ptrdiff_t>(begin), y_.begin() + static_cast<std::ptrdiff_t>(end),
-              Vec3::Zero());
+    for (std::size_t v = begin; v < end; ++v) {
+      p_[v] = Vec3(p[v][0], p[v][1], p[v][2]);
+      y_[v].setZero();
+    }
   });
   for (const General& g : generals_) {
     g.potential->add_hessian_product(g.x, std::span(p_).subspan(g.first, g.x.size()),
@@ -153,9 +181,8 @@ double Linearization::add_rest_product(Floats p, Floats y) {
            double part = 0;
            for (std::size_t v = begin; v < end; ++v) {
              const Vec3 f = scale_ * y_[v];
-             y.x[v] += static_cast<float>(f.x());
-             y.y[v] += static_cast<float>(f.y());
-             y.z[v] += static_cast<float>(f.z());
+             y[v] +=
+                 Float4{static_cast<float>(f.x()), static_cast<float>(f.y()), static_cast<float>(f.z()), 0};
              part += f.dot(p_[v]);
            }
            return part;
@@ -167,6 +194,8 @@ std::size_t Linearization::bytes() const {
                       (p_.capacity() + y_.capacity()) * sizeof(Vec3) + blocks_.capacity() * sizeof(Mat3);
   for (const auto& set : storage_) bytes += set->bytes();
   for (const auto& matrix : matrix_storage_) bytes += matrix->bytes();
+  for (const auto& relative : relatives_) bytes += relative->bytes();
+  bytes += from_.bytes() + into_.bytes();
   return bytes;
 }
 

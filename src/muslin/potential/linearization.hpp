@@ -1,9 +1,11 @@
 // The Hessian of an incremental potential at one x, as the inner solver works with it: in float.
 //
-//   H = diag(identity) + couplings + K,   K = block matrices + potentials of any other kind
+//   H = diag(identity) + couplings + K,   K = block matrices + the loose rest,
+//
+// the loose rest being relative stiffnesses and potentials of any other kind.
 //
 // Potentials add themselves (Potential::linearize): springs as couplings, shells as block matrices, drags as
-// part of the identity, everything else by its product in double.
+// part of the identity, contacts as relative stiffness, everything else by its product in double.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +17,7 @@
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/block_matrix.hpp"
 #include "muslin/potential/couplings.hpp"
+#include "muslin/potential/relative_stiffness.hpp"
 
 namespace muslin {
 
@@ -34,12 +37,12 @@ class Linearization {
   /// The blocks of this pattern on vertices first, first + 1, …; zero when first asked for. What is added
   /// must be symmetric and positive semidefinite.
   BlockMatrix& matrix(const std::shared_ptr<const BlockPattern>& pattern, std::size_t first);
+  /// A relative stiffness between `count` vertices first, first + 1, …, without terms yet; scaled already.
+  RelativeStiffness& relative_stiffness(std::size_t first, std::size_t count);
   /// H += value on vertex v; scaled already.
   void add_identity(std::size_t v, double value) { identity_.data()[v] += static_cast<float>(value); }
   /// A potential of vertices first, first + 1, … at x, kept by reference.
   void add_general(const Potential& potential, std::size_t first, ConstVectors x);
-  /// The same, owned until the next `reset`.
-  void add_general(std::shared_ptr<const Potential> potential, std::size_t first, ConstVectors x);
 
   /// Called when all potentials are in.
   void finish();
@@ -60,12 +63,16 @@ class Linearization {
   const std::uint8_t* fixed() const { return fixed_.data(); }
 
   /// Whether K is not zero.
-  bool has_rest() const { return !matrices_.empty() || !generals_.empty(); }
+  bool has_rest() const { return !matrices_.empty() || has_loose(); }
+  /// Whether the loose part of K is not zero.
+  bool has_loose() const { return !generals_.empty() || relative_count_ > 0; }
   /// Positive semidefinite diagonal blocks of K: xx, xy, xz of `upper` and yy, yz, zz of `lower`, #V by 3.
   const FloatVectors& rest_upper() const { return upper_; }
   const FloatVectors& rest_lower() const { return lower_; }
   /// y += K p, #V by 3; returns pᵀK p.
   double add_rest_product(Floats p, Floats y);
+  /// The same with the loose part of K alone, and vectors as three floats and a zero each.
+  double add_loose_product(const Float4* p, Float4* y);
 
   std::size_t bytes() const;
 
@@ -87,9 +94,11 @@ class Linearization {
   std::vector<std::unique_ptr<BlockMatrix>> matrix_storage_;
   std::vector<const BlockMatrix*> matrices_;
   std::vector<General> generals_;
-  std::vector<std::shared_ptr<const Potential>> owned_;  // of generals_
+  std::vector<std::unique_ptr<RelativeStiffness>> relatives_;  // reused from step to step
+  std::size_t relative_count_ = 0;                             // of this x
   FloatVectors upper_, lower_;
-  std::vector<Vec3> p_, y_;  // for products in double
+  std::vector<Vec3> p_, y_;     // for products in double
+  Buffer<Float4> from_, into_;  // for those of relative stiffnesses
   std::vector<Mat3> blocks_;
 };
 

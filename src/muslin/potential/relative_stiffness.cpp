@@ -1,0 +1,103 @@
+#include "muslin/potential/relative_stiffness.hpp"
+
+#include "muslin/core/parallel.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr std::size_t grain = 2048;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+void RelativeStiffness::reset(std::size_t first, std::size_t count) {
+  first_ = first;
+  count_ = count;
+  terms_.clear();
+  weights_.clear();
+}
+
+void RelativeStiffness::add(const Vec3& normal, double along, double across,
+                            std::span<const Weight> weights) {
+  const int begin = static_cast<int>(weights_.size());
+  weights_.insert(weights_.end(), weights.begin(), weights.end());
+  const Float4 n = {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                    static_cast<float>(normal.z()), 0};
+  terms_.push_back(Term{n, static_cast<float>(along - across), static_cast<float>(across), begin,
+                        static_cast<int>(weights_.size())});
+}
+
+void RelativeStiffness::finish() {
+  next_.assign(count_, 0);
+  for (const Weight& w : weights_) ++next_[at(w.vertex)];
+  vertices_.clear();
+  offsets_.assign(1, 0);
+  for (std::size_t v = 0; v < count_; ++v) {
+    if (next_[v] == 0) continue;
+    vertices_.push_back(static_cast<int>(v));
+    offsets_.push_back(offsets_.back() + next_[v]);
+    next_[v] = offsets_[offsets_.size() - 2];
+  }
+  shares_.resize(weights_.size());
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    for (int k = terms_[t].begin; k < terms_[t].end; ++k)
+      shares_[at(next_[at(weights_[at(k)].vertex)]++)] = {static_cast<int>(t), weights_[at(k)].weight};
+  }
+  forces_.resize(terms_.size());
+}
+
+double RelativeStiffness::add_product(const Float4* p, Float4* y) {
+  const double curvature = parallel_sum(terms_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      const Term& term = terms_[t];
+      Float4 u = {0, 0, 0, 0};
+      for (int k = term.begin; k < term.end; ++k) u += weights_[at(k)].weight * p[weights_[at(k)].vertex];
+      const Float4 n = term.normal * u;
+      const Float4 force = term.across * u + term.difference * (n[0] + n[1] + n[2]) * term.normal;
+      const Float4 work = force * u;
+      forces_[t] = force;
+      sum += static_cast<double>(work[0] + work[1] + work[2]);
+    }
+    return sum;
+  });
+  parallel_for(vertices_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Float4 sum = {0, 0, 0, 0};
+      for (int k = offsets_[i]; k < offsets_[i + 1]; ++k)
+        sum += shares_[at(k)].weight * forces_[at(shares_[at(k)].term)];
+      y[vertices_[i]] += sum;
+    }
+  });
+  return curvature;
+}
+
+void RelativeStiffness::add_diagonal(Floats upper, Floats lower) const {
+  parallel_for(vertices_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Float4 x = {0, 0, 0, 0}, y = x;
+      float zz = 0;
+      for (int k = offsets_[i]; k < offsets_[i + 1]; ++k) {
+        const Term& term = terms_[at(shares_[at(k)].term)];
+        const float square = shares_[at(k)].weight * shares_[at(k)].weight;
+        const Float4 n = square * term.difference * term.normal;
+        const float across = square * term.across;
+        x += n[0] * term.normal + Float4{across, 0, 0, 0};
+        y += n[1] * term.normal + Float4{0, across, 0, 0};
+        zz += n[2] * term.normal[2] + across;
+      }
+      const int v = vertices_[i];
+      upper.x[v] += x[0], upper.y[v] += x[1], upper.z[v] += x[2];
+      lower.x[v] += y[1], lower.y[v] += y[2], lower.z[v] += zz;
+    }
+  });
+}
+
+std::size_t RelativeStiffness::bytes() const {
+  return terms_.capacity() * sizeof(Term) + weights_.capacity() * sizeof(Weight) +
+         (vertices_.capacity() + offsets_.capacity() + next_.capacity()) * sizeof(int) +
+         shares_.capacity() * sizeof(Share) + forces_.capacity() * sizeof(Float4);
+}
+
+}  // namespace muslin

@@ -1,0 +1,60 @@
+// Stiffness against relative motion, in float: what contacts add to the Hessian as the inner solver works
+// with it.
+//
+//   K = Σ Aᵀ (a n nᵀ + b (I − n nᵀ)) A,   A p = Σ wᵢ pᵢ
+//
+// over terms that change from one linearisation to the next; few of the vertices are part of any.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/potential/float_vectors.hpp"
+
+namespace muslin {
+
+class RelativeStiffness {
+ public:
+  struct Weight {
+    int vertex = 0;
+    float weight = 0;
+  };
+  /// Starts anew without terms, for vertices first … first + count − 1.
+  void reset(std::size_t first, std::size_t count);
+  /// Adds a term: `normal` of length 1, along = a ≥ 0 and across = b ≥ 0 [kg], each vertex once.
+  void add(const Vec3& normal, double along, double across, std::span<const Weight> weights);
+  /// Called when all terms are in.
+  void finish();
+
+  std::size_t first() const { return first_; }
+  /// y += K p, #V by 3 and a zero each, starting at the body; returns pᵀK p.
+  double add_product(const Float4* p, Float4* y);
+  /// Adds the diagonal blocks: xx, xy, xz, yy, yz, zz are the components of `upper` and `lower`.
+  void add_diagonal(Floats upper, Floats lower) const;
+
+  std::size_t bytes() const;
+
+ private:
+  struct Term {
+    Float4 normal;
+    float difference, across;  // a − b and b
+    int begin, end;            // weights
+  };
+  struct Share {
+    int term;
+    float weight;
+  };
+
+  std::size_t first_ = 0, count_ = 0;
+  std::vector<Term> terms_;
+  std::vector<Weight> weights_;  // by term
+  std::vector<int> vertices_;    // with terms, ascending
+  std::vector<int> offsets_;     // of their shares
+  std::vector<Share> shares_;    // by vertex
+  std::vector<int> next_;        // room for sorting
+  std::vector<Float4> forces_;   // by term
+};
+
+}  // namespace muslin
