@@ -76,6 +76,22 @@ class ElementSlabs {
     });
   }
 
+  /// The same, and the sum of what batch(first, count, owned, slab) returns: of the first `owned` entries
+  /// only, so that each element counts once.
+  template <class Body>
+  double sum_of_batches(const Body& batch) const {
+    return parallel_sum(slabs_.size(), 1, 0.0, [&](std::size_t begin, std::size_t end) {
+      double total = 0;
+      for (std::size_t s = begin; s < end; ++s) {
+        for (int e = slabs_[s].begin; e < slabs_[s].end; e += element_lanes) {
+          total += batch(e, std::min(element_lanes, slabs_[s].end - e),
+                         std::clamp(slabs_[s].owned_end - e, 0, element_lanes), slabs_[s]);
+        }
+      }
+      return total;
+    });
+  }
+
   /// The combination by + of term(first, count) over all elements, each taken once.
   template <class Value, class Term>
   Value sum(Value zero, const Term& term) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "muslin/core/arc_tangent.hpp"
 #include "muslin/core/vector_code.hpp"
 
 namespace muslin {
@@ -91,7 +92,7 @@ MUSLIN_INLINE void to_corners(const Gradient& d, Batch<4>& g) {
 /// θ − θ₀ within −π … π.
 MUSLIN_INLINE void deviations(const Bent& h, const double* rest, double* out) {
   for (int l = 0; l < lanes; ++l) {
-    const double difference = std::atan2(h.sine[l], h.cosine[l]) - rest[l];
+    const double difference = arc_tangent(h.sine[l], h.cosine[l]) - rest[l];
     out[l] = difference - (difference > turn / 2 ? turn : 0) + (difference < -turn / 2 ? turn : 0);
   }
 }
@@ -104,8 +105,9 @@ MUSLIN_VECTOR_CODE void energies(const double* stiffness, const double* rest, co
   for (int l = 0; l < lanes; ++l) w[l] = 0.5 * stiffness[l] * deviation[l] * deviation[l];
 }
 
+/// Forces on the corners, and W.
 MUSLIN_VECTOR_CODE void gradients(const double* stiffness, const double* rest, const Batch<4>& x,
-                                  Batch<4>& force) {
+                                  Batch<4>& force, double* w) {
   Bent h;
   Gradient d;
   bend(x, h);
@@ -113,7 +115,10 @@ MUSLIN_VECTOR_CODE void gradients(const double* stiffness, const double* rest, c
   to_corners(d, force);
   double moment[lanes];
   deviations(h, rest, moment);
-  for (int l = 0; l < lanes; ++l) moment[l] *= stiffness[l];
+  for (int l = 0; l < lanes; ++l) {
+    w[l] = 0.5 * stiffness[l] * moment[l] * moment[l];
+    moment[l] *= stiffness[l];
+  }
   for (int c = 0; c < 4; ++c)
     for (int k = 0; k < 3; ++k)
       for (int l = 0; l < lanes; ++l) force[c][k][l] *= moment[l];
@@ -229,14 +234,19 @@ double HingeBending::value(ConstVectors x) const {
   });
 }
 
-void HingeBending::add_gradient(ConstVectors x, Vectors g) const {
-  slabs_.for_each_batch([&](int first, int count, const ElementSlabs<4>::Slab& slab) {
+double HingeBending::add_gradient_and_value(ConstVectors x, Vectors g) const {
+  return slabs_.sum_of_batches([&](int first, int count, int owned, const ElementSlabs<4>::Slab& slab) {
     Batch<4> corners, force;
+    double w[lanes], sum = 0;
     slabs_.gather(first, count, x, corners);
-    gradients(stiffness_.data() + first, angle_.data() + first, corners, force);
+    gradients(stiffness_.data() + first, angle_.data() + first, corners, force, w);
     slabs_.scatter(first, count, slab, force, g);
+    for (int l = 0; l < owned; ++l) sum += w[l];
+    return sum;
   });
 }
+
+void HingeBending::add_gradient(ConstVectors x, Vectors g) const { add_gradient_and_value(x, g); }
 
 void HingeBending::add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const {
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<4>::Slab& slab) {

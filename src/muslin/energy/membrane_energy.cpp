@@ -59,10 +59,8 @@ MUSLIN_INLINE void to_corners(const Rest& rest, const Vector& pa, const Vector& 
   }
 }
 
-MUSLIN_VECTOR_CODE void energies(const MembraneEnergy::Constants& c, const Rest& rest, const Batch<3>& x,
-                                 double* w) {
-  Vector a, b;
-  along_threads(rest, x, a, b);
+MUSLIN_INLINE void energies_of(const MembraneEnergy::Constants& c, const Rest& rest, const Vector& a,
+                               const Vector& b, double* w) {
   for (int l = 0; l < lanes; ++l) {
     const double aa = a[0][l] * a[0][l] + a[1][l] * a[1][l] + a[2][l] * a[2][l];
     const double bb = b[0][l] * b[0][l] + b[1][l] * b[1][l] + b[2][l] * b[2][l];
@@ -72,11 +70,19 @@ MUSLIN_VECTOR_CODE void energies(const MembraneEnergy::Constants& c, const Rest&
            (c.c11 * (euu * euu) + 2 * c.c12 * (euu * evv) + c.c22 * (evv * evv) + c.g * (ab * ab));
   }
 }
+MUSLIN_VECTOR_CODE void energies(const MembraneEnergy::Constants& c, const Rest& rest, const Batch<3>& x,
+                                 double* w) {
+  Vector a, b;
+  along_threads(rest, x, a, b);
+  energies_of(c, rest, a, b, w);
+}
 
+/// Forces on the corners, and W.
 MUSLIN_VECTOR_CODE void gradients(const MembraneEnergy::Constants& c, const Rest& rest, const Batch<3>& x,
-                                  Batch<3>& g) {
+                                  Batch<3>& g, double* w) {
   Strained s;
   strain(c, rest, x, s);
+  energies_of(c, rest, s.a, s.b, w);
   Vector pa, pb;
   for (int k = 0; k < 3; ++k) {
     for (int l = 0; l < lanes; ++l) {
@@ -179,14 +185,19 @@ double MembraneEnergy::value(ConstVectors x) const {
   });
 }
 
-void MembraneEnergy::add_gradient(ConstVectors x, Vectors g) const {
-  slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {
+double MembraneEnergy::add_gradient_and_value(ConstVectors x, Vectors g) const {
+  return slabs_.sum_of_batches([&](int first, int count, int owned, const ElementSlabs<3>::Slab& slab) {
     Batch<3> corners, force;
+    double w[lanes], sum = 0;
     slabs_.gather(first, count, x, corners);
-    gradients(constants_, rest_at(rest_, first), corners, force);
+    gradients(constants_, rest_at(rest_, first), corners, force, w);
     slabs_.scatter(first, count, slab, force, g);
+    for (int l = 0; l < owned; ++l) sum += w[l];
+    return sum;
   });
 }
+
+void MembraneEnergy::add_gradient(ConstVectors x, Vectors g) const { add_gradient_and_value(x, g); }
 
 void MembraneEnergy::add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const {
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {

@@ -37,6 +37,7 @@ class MembraneEnergy : public ShellEnergy {
 
   double value(ConstVectors x) const override;
   void add_gradient(ConstVectors x, Vectors g) const override;
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override;
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
   void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, BlockMatrix& matrix) const override;
