@@ -8,6 +8,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "muslin/force/gravity.hpp"
+
 namespace muslin::bench {
 namespace {
 
@@ -29,7 +31,9 @@ Problem body(const ProblemSettings& settings) {
   const double corner = density * std::pow(settings.width, 3) / 8;
   for (const auto& corners : problem.lattice.voxel_vertices)
     for (const int v : corners) problem.masses[static_cast<std::size_t>(v)] += corner;
-  problem.gravity = std::make_shared<test::UniformGravity>(problem.masses, Vec3(0, -9.8, 0));
+  StepContext always;
+  always.time_end = 1;
+  problem.gravity = Gravity(problem.masses, {{{0, Vec3(0, -9.8, 0)}}}, {0, INFINITY}).potential(always);
   problem.rest_positions = test::rest_positions(problem.lattice);
   problem.fixed.assign(count, 0);
   const Vec3i& e = problem.lattice.extent;

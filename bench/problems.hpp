@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "support/lattice_box.hpp"
-#include "support/simple_potentials.hpp"
 #include "textbook.hpp"
 
 #include "muslin/energy/spring_energy.hpp"
@@ -24,7 +23,7 @@ struct Problem {
   std::vector<double> masses;
   std::vector<std::uint8_t> fixed;
   std::shared_ptr<const SpringEnergy> springs;
-  std::shared_ptr<const test::UniformGravity> gravity;
+  std::shared_ptr<const Potential> gravity;
   std::vector<Vec3> rest_positions;
   bool coarse_space = true;  ///< whether steps may use it
   State state;

@@ -5,6 +5,7 @@
 
 #include "clock.hpp"
 #include "support/sheet.hpp"
+#include "support/simple_potentials.hpp"
 
 #include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"

@@ -1,5 +1,6 @@
 #include "muslin/force/gravity.hpp"
 
+#include <array>
 #include <cassert>
 #include <utility>
 
@@ -18,12 +19,10 @@ class UniformField : public Potential {
 
   double value(ConstVectors x) const override {
     assert(x.size() == masses_->size());
-    const Vec3 moment = parallel_sum(x.size(), kGrain, Vec3(Vec3::Zero()), [&](auto begin, auto end) {
-      Vec3 sum = Vec3::Zero();
-      for (std::size_t v = begin; v < end; ++v) sum += (*masses_)[v] * x[v];
-      return sum;
-    });
-    return -acceleration_.dot(moment);
+    return pass(x, [](std::size_t) {});
+  }
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override {
+    return pass(x, [&](std::size_t v) { g[v] -= (*masses_)[v] * acceleration_; });
   }
   void add_gradient(ConstVectors x, Vectors g) const override {
     assert(x.size() == masses_->size());
@@ -36,6 +35,30 @@ class UniformField : public Potential {
   void linearize(ConstVectors, Linearization&, std::size_t) const override {}
 
  private:
+  /// Calls also(v) for all v; returns the energy.
+  template <class Also>
+  double pass(ConstVectors x, const Also& also) const {
+    const Vec3 moment = parallel_sum(x.size(), kGrain, Vec3(Vec3::Zero()), [&](auto begin, auto end) {
+      // Sums that need not wait for each other.
+      constexpr std::size_t sums = 4;
+      std::array<Vec3, sums> sum;
+      sum.fill(Vec3::Zero());
+      std::size_t v = begin;
+      for (; v + sums <= end; v += sums) {
+        for (std::size_t i = 0; i < sums; ++i) {
+          sum[i] += (*masses_)[v + i] * x[v + i];
+          also(v + i);
+        }
+      }
+      for (; v < end; ++v) {
+        sum[0] += (*masses_)[v] * x[v];
+        also(v);
+      }
+      return Vec3((sum[0] + sum[1]) + (sum[2] + sum[3]));
+    });
+    return -acceleration_.dot(moment);
+  }
+
   std::shared_ptr<const std::vector<double>> masses_;
   Vec3 acceleration_;
 };

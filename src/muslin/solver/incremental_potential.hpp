@@ -53,6 +53,9 @@ class IncrementalPotential {
   struct Evaluation {
     Value value;
     Imbalance imbalance;
+    /// What the value at x̃ is above that at x if all potentials are convex between them:
+    /// ½ (x − x̃)ᵀ M (x − x̃) − gᵀ(x − x̃) [J s²].
+    double prediction_above = 0;
   };
   Evaluation evaluate(ConstVectors x, Vectors g) const;
   /// What of the imbalance rounding can cause: half a unit in the last place of every coordinate, carried

@@ -61,6 +61,8 @@ std::optional<IncrementalPotential::Evaluation> warm_start(const IncrementalPote
     // Nearly always the better start: its gradient is worth computing along with the value.
     best = function.evaluate(x, workspace.g);
     if (!(best.value.value < INFINITY)) best.value.value = INFINITY;
+    // The prediction is not lower, unless by what is not convex.
+    if (best.value.value < INFINITY && best.prediction_above >= 0) return best;
   }
   const auto consider = [&](const auto& candidate) {
     if (!go(candidate, other) || !(function.value(other).value < best.value.value)) return;

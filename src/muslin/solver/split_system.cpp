@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "muslin/core/parallel.hpp"
 
@@ -94,6 +95,28 @@ void SplitSystem::for_each_vertex(const Value* by_vertex, const Body& body) cons
   }
 }
 
+/// The identity and which vertices are free, by position.
+void SplitSystem::arrange_identity() {
+  const float* const identity = h_->identity();
+  const std::uint8_t* const fixed = h_->fixed();
+  const std::size_t count = h_->size();
+  std::vector<std::shared_ptr<const CouplingPattern>> patterns;
+  for (const Couplings* set : h_->sets()) patterns.push_back(set->shared_pattern());
+  const bool as_before = patterns == patterns_ && identity_by_vertex_.size() == count &&
+                         std::memcmp(identity_by_vertex_.data(), identity, count * sizeof(float)) == 0 &&
+                         std::memcmp(fixed_by_vertex_.data(), fixed, count) == 0;
+  if (as_before) return;
+  patterns_ = std::move(patterns);
+  identity_by_vertex_.assign(identity, identity + count);
+  fixed_by_vertex_.assign(fixed, fixed + count);
+  free_.assign(group_count_, 0);
+  for_each_vertex(identity, [&](std::int64_t v, std::size_t i) {
+    identity_.data()[i] = v < 0 ? 0 : identity[v];
+    if (v >= 0 && fixed[v] == 0)
+      free_[i / lanes] = static_cast<std::uint16_t>(free_[i / lanes] | 1U << i % lanes);
+  });
+}
+
 double SplitSystem::factor(Linearization& h) {
   h_ = &h;
   parts_.clear();
@@ -113,20 +136,16 @@ double SplitSystem::factor(Linearization& h) {
   c_ = x_ + 3 * positions;
   further_ = h.has_rest() ? c_ + 3 * positions : nullptr;
   flat_.resize(positions);
-  free_.assign(group_count_, 0);
 
-  const float* const identity = h.identity();
-  const std::uint8_t* const fixed = h.fixed();
-  const Floats upper = h.rest_upper().data(), lower = h.rest_lower().data();
-  for_each_vertex(identity, [&](std::int64_t v, std::size_t i) {
-    identity_.data()[i] = v < 0 ? 0 : identity[v];
-    if (v >= 0 && fixed[v] == 0)
-      free_[i / lanes] = static_cast<std::uint16_t>(free_[i / lanes] | 1U << i % lanes);
-    if (!h.has_rest()) return;
-    const float* const from[6] = {upper.x, upper.y, upper.z, lower.x, lower.y, lower.z};
-    for (std::size_t k = 0; k < 6; ++k)
-      rest_.data()[i / lanes * matrix_size + k * lanes + i % lanes] = v < 0 ? 0 : from[k][v];
-  });
+  arrange_identity();
+  if (h.has_rest()) {
+    const Floats upper = h.rest_upper().data(), lower = h.rest_lower().data();
+    for_each_vertex(upper.x, [&](std::int64_t v, std::size_t i) {
+      const float* const from[6] = {upper.x, upper.y, upper.z, lower.x, lower.y, lower.z};
+      for (std::size_t k = 0; k < 6; ++k)
+        rest_.data()[i / lanes * matrix_size + k * lanes + i % lanes] = v < 0 ? 0 : from[k][v];
+    });
+  }
 
   // M by position, for the neighbours: where the vectors will be.
   float* const m = r_;
@@ -243,7 +262,8 @@ void SplitSystem::solution(double alpha, double scale, Vectors s) {
 std::size_t SplitSystem::bytes() const {
   return identity_.bytes() + rest_.bytes() + pivots_.bytes() + excess_.bytes() + pivot_units_.bytes() +
          excess_units_.bytes() + flat_.bytes() + other_.bytes() + free_.capacity() * sizeof(free_[0]) +
-         t_.bytes() + product_.bytes();
+         identity_by_vertex_.capacity() * sizeof(float) + fixed_by_vertex_.capacity() + t_.bytes() +
+         product_.bytes();
 }
 
 }  // namespace muslin

@@ -16,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -67,11 +68,16 @@ class SplitSystem {
   template <class Value, class Body>
   void for_each_vertex(const Value* by_vertex, const Body& body) const;
   double add_rest_product();
+  void arrange_identity();
 
   Linearization* h_ = nullptr;
   std::vector<Part> parts_;
   std::size_t group_count_ = 0;
   Buffer<float> identity_, rest_;
+  // What identity_ and free_ were made from, and for which patterns: the same from step to step, as a rule.
+  std::vector<float> identity_by_vertex_;
+  std::vector<std::uint8_t> fixed_by_vertex_;
+  std::vector<std::shared_ptr<const CouplingPattern>> patterns_;
   Buffer<std::uint32_t> pivots_, excess_;
   Buffer<float> pivot_units_, excess_units_;
   std::vector<std::uint16_t> free_;
