@@ -16,10 +16,10 @@ constexpr double armijo = 1e-4;
 constexpr double rounding = 1e-12;  // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-6;
 constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-3, fast_forcing = 0.05;
-/// A fast step ends early where its last motion was below the first share of the guard's resolution, and goes
-/// on, to no more than so many times its iterations, where it was above the second.
+/// A fast step ends early where its last motion was below the first share of the guard's resolution, and
+/// makes more iterations, but no more than so many, where it was above the second.
 constexpr double calm_share = 0.02, restless_share = 0.1;
-constexpr int restless_times = 2;
+constexpr int restless_iterations = 1;
 /// Iterations that Anderson's acceleration looks back over in a converged step, and those it leaves alone.
 constexpr std::size_t mixed_iterations = 5;
 constexpr int unmixed_iterations = 3;
@@ -50,7 +50,7 @@ class GuardedStep {
     workspace_.inner.begin_step();
     StepReport report;
     const bool fast = settings_.effort == Effort::fast;
-    const int most = fast ? restless_times * settings_.fast_iterations : settings_.max_iterations;
+    const int most = fast ? settings_.fast_iterations + restless_iterations : settings_.max_iterations;
     for (;;) {
       if (report.newton_iterations > 0 && held_back_ > 0) push_held();
       find_gradient();

@@ -34,7 +34,7 @@ struct SolverSettings {
   /// Converged when no vertex is out of balance by more than this acceleration: max ‖∂E/∂xᵢ‖ / (mᵢ dt²) ≤
   /// tolerance [m/s²].
   double tolerance = 1e-2;
-  int max_iterations = 100;        ///< Newton iterations of a converged step
+  int max_iterations = 100;  ///< Newton iterations of a converged step
   /// Newton iterations of a fast step: fewer where hardly anything moves any more, up to twice as many where
   /// much still does.
   int fast_iterations = 2;
