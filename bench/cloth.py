@@ -1,4 +1,4 @@
-"""The table of cloth in contact in docs/performance.md, from cloth_bench."""
+"""The tables of cloth in contact in docs/performance.md, from cloth_bench and contact_bench."""
 import json
 import pathlib
 import subprocess
@@ -10,16 +10,20 @@ BEGIN, END = "<!-- cloth measured by bench/run -->", "<!-- end of cloth -->"
 
 def measure(build, pattern, machine, root):
     """Runs the cases that match, keeps the numbers of the others, and writes the table."""
-    subprocess.run(["cmake", "--build", build, "--target", "cloth_bench"], cwd=root, check=True)
-    raw = build / "cloth_bench.json"
-    raw.unlink(missing_ok=True)
-    subprocess.run([build / "bench" / "cloth_bench", f"--benchmark_filter={pattern}", f"--benchmark_out={raw}",
-                    "--benchmark_out_format=json"], check=True)
-    if not raw.exists() or not raw.stat().st_size:
+    subprocess.run(["cmake", "--build", build, "--target", "cloth_bench", "contact_bench"], cwd=root, check=True)
+    found = []
+    for program in ("cloth_bench", "contact_bench"):
+        raw = build / f"{program}.json"
+        raw.unlink(missing_ok=True)
+        subprocess.run([build / "bench" / program, f"--benchmark_filter={pattern}", f"--benchmark_out={raw}",
+                        "--benchmark_out_format=json"], check=True)
+        if raw.exists() and raw.stat().st_size:
+            found += json.loads(raw.read_text())["benchmarks"]
+    if not found:
         return False
     kept = pathlib.Path(root) / "bench" / "results" / f"{machine}.cloth.json"
     runs = json.loads(kept.read_text()) if kept.exists() else {}
-    for run in json.loads(raw.read_text())["benchmarks"]:
+    for run in found:
         runs[run["name"].replace("/iterations:1/manual_time", "")] = {
             k: v for k, v in run.items() if isinstance(v, float)}
     kept.write_text(json.dumps(runs, indent=1, sort_keys=True) + "\n")
@@ -28,8 +32,12 @@ def measure(build, pattern, machine, root):
 
 
 def text(runs, machine):
-    rows = []
+    rows, parts = [], {}
     for name, r in sorted(runs.items()):
+        if name.count("/") == 1:
+            part, size = name.split("/")
+            parts.setdefault(part.replace("_", " "), {})[int(size)] = number(r["cpu_time"])
+            continue
         case, mode, threads = name.split("/")
         spent = sum(r[k] for k in ("search_ms", "limit_ms", "contact_ms", "assembly_ms", "solve_ms"))
         shares = " / ".join(f"{100 * r[k] / max(spent, 1e-9):.0f}"
@@ -39,7 +47,12 @@ def text(runs, machine):
                      f"{r['height']:.4f}", number(r["crossings"])])
     head = ["case", "mode", "threads", "ms a frame, average / worst", "Newton, linear iterations a frame",
             "% search / limiter / contact / assembly / solve", "stretch", "mean height [m]", "crossings"]
-    return "\n".join([f"On {machine}:", "", *table(head, rows)])
+    sizes = sorted({size for part in parts.values() for size in part})
+    timed = table(["part", *(f"{n}²" for n in sizes)],
+                  [[part, *(times.get(n, "–") for n in sizes)] for part, times in sorted(parts.items())])
+    return "\n".join([f"On {machine}:", "", *table(head, rows), "",
+                      "Parts of contact on one thread, crumpled cloth draped over a ball, milliseconds of processor time:",
+                      "", *timed])
 
 
 def write(runs, machine, root):

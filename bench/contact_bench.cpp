@@ -11,6 +11,7 @@
 #include "muslin/contact/pair_search.hpp"
 #include "muslin/contact/step_limiter.hpp"
 #include "muslin/contact/surface_map.hpp"
+#include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
@@ -155,4 +156,8 @@ BENCHMARK(referee)->Arg(50)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
 }  // namespace
 }  // namespace muslin
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  muslin::set_thread_count(1);
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}
