@@ -1,0 +1,87 @@
+// Stiffness against relative motion: products and diagonal blocks are those of the sum that the header
+// states.
+#include "muslin/potential/relative_stiffness.hpp"
+
+#include <random>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "muslin/core/parallel.hpp"
+
+namespace muslin {
+namespace {
+
+struct Terms {
+  static constexpr int vertices = 40, first = 7;
+  RelativeStiffness stiffness;
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * vertices, 3 * vertices);
+
+  explicit Terms(int count) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> any(-1, 1);
+    stiffness.reset(first, vertices);
+    for (int i = 0; i < count; ++i) {
+      const Vec3 n = Vec3(any(random), any(random), any(random)).normalized();
+      const double along = 5 + any(random), across = 1 + any(random);
+      std::vector<RelativeStiffness::Weight> weights;
+      Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3, 3 * vertices);
+      for (int k = 0; k < 4; ++k) {
+        // Half of the vertices are part of no term.
+        const int v = 2 * ((3 * i + k) % (vertices / 2));
+        const double w = any(random);
+        weights.push_back({v, static_cast<float>(w)});
+        a.block<3, 3>(0, 3 * v) = static_cast<double>(static_cast<float>(w)) * Mat3::Identity();
+      }
+      stiffness.add(n, along, across, weights);
+      const Mat3 block = across * Mat3::Identity() + (along - across) * n * n.transpose();
+      dense += a.transpose() * block * a;
+    }
+    stiffness.finish();
+  }
+};
+
+TEST(RelativeStiffness, MultipliesAsTheSumOfItsTerms) {
+  Terms terms(60);
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<float> any(-1, 1);
+  std::vector<Float4> p(Terms::first + Terms::vertices), y(p.size(), Float4{1, 2, 3, 0});
+  Eigen::VectorXd q(3 * Terms::vertices);
+  for (Float4& v : p) v = Float4{any(random), any(random), any(random), 0};
+  for (int v = 0; v < Terms::vertices; ++v)
+    for (int k = 0; k < 3; ++k) q[3 * v + k] = p[static_cast<std::size_t>(Terms::first + v)][k];
+  const Eigen::VectorXd expected = terms.dense * q;
+  const double energy = terms.stiffness.add_product(p.data() + Terms::first, y.data() + Terms::first);
+  EXPECT_NEAR(energy, q.dot(expected), 1e-5 * q.dot(expected));
+  for (int v = 0; v < Terms::vertices; ++v)
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(y[static_cast<std::size_t>(Terms::first + v)][k] - static_cast<float>(k + 1),
+                  expected[3 * v + k], 1e-4);
+  for (std::size_t v = 0; v < Terms::first; ++v) EXPECT_EQ(y[v][0], 1) << "beyond the body";
+}
+
+TEST(RelativeStiffness, IsEmptyAfterReset) {
+  Terms terms(5);
+  terms.stiffness.reset(0, 3);
+  terms.stiffness.finish();
+  std::vector<Float4> p(3, Float4{1, 1, 1, 0}), y(3, Float4{});
+  EXPECT_EQ(terms.stiffness.add_product(p.data(), y.data()), 0);
+  for (const Float4& v : y) EXPECT_EQ(v[0], 0);
+}
+
+TEST(RelativeStiffness, GivesTheSameBitsForAnyThreads) {
+  Terms terms(2000);
+  std::vector<Float4> p(Terms::vertices, Float4{0.3F, -0.7F, 0.1F, 0}), one(p.size(), Float4{}), two = one;
+  set_thread_count(1);
+  const double a = terms.stiffness.add_product(p.data(), one.data());
+  set_thread_count(2);
+  const double b = terms.stiffness.add_product(p.data(), two.data());
+  set_thread_count(0);
+  EXPECT_EQ(a, b);
+  for (std::size_t v = 0; v < one.size(); ++v)
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(one[v][k], two[v][k]);
+}
+
+}  // namespace
+}  // namespace muslin
