@@ -77,15 +77,14 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
 }
 
 std::size_t NewtonWorkspace::bytes() const {
-  const std::size_t vectors = x.capacity() + g.capacity() + s.capacity() + room.capacity();
+  const std::size_t vectors = x.capacity() + g.capacity() + s.capacity() + end.capacity();
   return vectors * sizeof(Vec3) + inner.bytes();
 }
 
 StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings,
                     const IncrementalPotential::Evaluation& start, Vectors x, NewtonWorkspace& workspace) {
   const std::size_t count = function.size();
-  std::vector<Vec3>&other = workspace.x, &g = workspace.g, &s = workspace.s;
-  InnerSolver& inner = workspace.inner;
+  auto& [other, g, s, end, inner] = workspace;
   for (auto* vectors : {&other, &s}) vectors->resize(count);
   Point point{x, start};
   Vectors room = other;

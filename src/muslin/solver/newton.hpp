@@ -13,7 +13,7 @@ namespace muslin {
 struct NewtonWorkspace {
   std::vector<Vec3> x;     ///< where the line search starts, or what it tries
   std::vector<Vec3> g, s;  ///< gradient and step
-  std::vector<Vec3> room;  ///< used by linearly implicit steps only
+  std::vector<Vec3> end;   ///< room for the result
   InnerSolver inner;
 
   std::size_t bytes() const;

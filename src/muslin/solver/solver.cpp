@@ -91,10 +91,9 @@ StepReport solve_implicit(const SolverSettings& settings, const StepContext& con
 /// Solves H s = b to a relative residual of `tolerance` in the norm of the preconditioner, whatever the
 /// definiteness of H: in float, refined with products in double (iterative refinement; Higham, Accuracy and
 /// Stability of Numerical Algorithms, ch. 12), and all in double where that does not converge.
-/// `room` is for a vector.
 LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
-                           double tolerance, InnerSolver& inner, Vectors s, Vectors residual, Vectors room) {
-  constexpr double inner_tolerance = 4e-4;
+                           double tolerance, InnerSolver& inner, Vectors s, Vectors residual) {
+  constexpr double inner_tolerance = 1e-3;
   constexpr double slowest = 0.3;  // residual after a refinement over that before
   const std::size_t count = b.size();
   LinearSettings linear;
@@ -103,6 +102,7 @@ LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x,
   inner.linearize(function, x);
   LinearReport report;
   if (inner.stiffest() <= InnerSolver::float_limit) {
+    std::vector<Vec3> correction(count), product(count);
     std::fill(s.begin(), s.end(), Vec3::Zero());
     std::copy(b.begin(), b.end(), residual.begin());
     double first = 0;
@@ -111,16 +111,16 @@ LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x,
       linear.tolerance = std::max(0.5 * need, inner_tolerance);
       linear.enough = tolerance * first;
       double norm;
-      const LinearReport solved = inner.solve(residual, linear, room, norm);
+      const LinearReport solved = inner.solve(residual, linear, correction, norm);
       if (first == 0) first = norm;
       report.relative_residual = first > 0 ? norm / first : 0;
       report.converged = norm <= tolerance * first;
       if (report.converged || !(norm <= slowest * before)) break;
       report.iterations += solved.iterations;
       before = norm;
-      add(1, room, s);
-      function.hessian_product(x, s, room);
-      combine(b, -1, room, residual);
+      add(1, correction, s);
+      function.hessian_product(x, s, product);
+      for_each_vertex(count, [&](std::size_t v) { residual[v] = b[v] - product[v]; });
     }
     if (report.converged) return report;
   }
@@ -143,30 +143,28 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
   StepProblem problem = given;
   if (problem.guard) problem.potentials.push_back(&problem.guard->potential(state.positions));
   const IncrementalPotential function(problem, context.inertial_prediction, dt);
-  auto& [residual, g, s, room, inner] = workspace;
-  std::vector<Vec3>& coast = x;
-  for (auto* vectors : {&residual, &g, &s, &room, &coast}) vectors->resize(count);
+  std::vector<Vec3> coast(count), rhs(count), s(count), residual(count), g(count);
   for_each_vertex(count, [&](std::size_t v) {
     coast[v] =
         function.held(v) ? Vec3(problem.targets[v] - state.positions[v]) : Vec3(dt * state.velocities[v]);
   });
   function.gradient(state.positions, g);
-  function.hessian_product(state.positions, coast, room);
-  const Vectors rhs = g;
-  for_each_vertex(count, [&](std::size_t v) { rhs[v] = -g[v] - room[v]; });
+  function.hessian_product(state.positions, coast, rhs);
+  for_each_vertex(count, [&](std::size_t v) { rhs[v] = -g[v] - rhs[v]; });
   const LinearReport solved =
-      solve_exactly(function, state.positions, rhs, settings.linear_tolerance, inner, s, residual, room);
+      solve_exactly(function, state.positions, rhs, settings.linear_tolerance, workspace.inner, s, residual);
+  x = state.positions;
   StepReport report;
-  add(1, s, coast);
   if (problem.guard) {
-    room = state.positions;
-    if (all_finite(coast)) problem.guard->advance(room, coast);
-    report.held_back = land_held_vertices(problem, room);
-    std::swap(x, room);
+    add(1, s, coast);
+    if (all_finite(coast)) problem.guard->advance(x, coast);
+    report.held_back = land_held_vertices(problem, x);
   } else {
-    for_each_vertex(count, [&](std::size_t v) {
-      x[v] = function.held(v) ? problem.targets[v] : Vec3(state.positions[v] + coast[v]);
-    });
+    add(1, coast, x);
+    add(1, s, x);
+    for (std::size_t v = 0; v < count; ++v) {
+      if (function.held(v)) x[v] = problem.targets[v];
+    }
   }
   const IncrementalPotential::Imbalance imbalance = function.imbalance(residual);
   report.converged = solved.converged;
@@ -185,15 +183,12 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
 
 struct Stepper::Workspace {
   NewtonWorkspace newton;
-  std::vector<Vec3> end;  ///< where the step ends
 };
 Stepper::Stepper() : workspace_(std::make_unique<Workspace>()) {}
 Stepper::~Stepper() = default;
 Stepper::Stepper(Stepper&&) noexcept = default;
 Stepper& Stepper::operator=(Stepper&&) noexcept = default;
-std::size_t Stepper::bytes() const {
-  return workspace_->newton.bytes() + workspace_->end.capacity() * sizeof(Vec3);
-}
+std::size_t Stepper::bytes() const { return workspace_->newton.bytes(); }
 
 StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                       State& state) {
@@ -205,7 +200,7 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
   assert(problem.masses.size() == state.positions.size());
   assert(problem.fixed.size() == state.positions.size());
   assert(state.velocities.size() == state.positions.size());
-  std::vector<Vec3>& x = workspace_->end;
+  std::vector<Vec3>& x = workspace_->newton.end;
   StepReport report;
   if (problem.guard) {
     if (settings.integrator == Integrator::symplectic_euler)
