@@ -260,6 +260,33 @@ TEST(CoarseSpace, KeepsTheIterationsOfClothAtAnyResolution) {
   }
 }
 
+/// Iterations of one linear system of the thesis's flag cut into voxels of 1/`cut` m, after it hung for a
+/// step of 1/8 s.
+int lattice_iterations(int cut, bool coarse) {
+  test::Flag flag({10 * cut, 6 * cut, 1}, {20000, 100, 100}, 1.0 / cut);
+  flag.hold_top_corners();
+  SolverSettings settings;
+  settings.integrator = Integrator::linearly_implicit_euler;
+  settings.linear_tolerance = 1e-5;
+  StepProblem problem = flag.problem();
+  if (coarse) problem.rest_positions = flag.rest;
+  int iterations = 0;
+  for (int n = 0; n < 2; ++n) {
+    const StepContext context = step_context(settings.integrator, flag.state, 1.0 / 8);
+    const StepReport report = solve_step(settings, context, problem, flag.state);
+    EXPECT_TRUE(report.converged) << report.failure;
+    iterations = report.linear_iterations;
+  }
+  return iterations;
+}
+
+TEST(CoarseSpace, BoundsTheIterationsOfLatticesAtAnyResolution) {
+  // k dt²/m is 1600 for the first and 16 times as much for the last. Below some 40 iterations the coarse
+  // space stays off, and two solves are refined into one.
+  for (const int cut : {5, 10, 20}) EXPECT_LE(lattice_iterations(cut, true), 90) << cut;
+  EXPECT_GE(lattice_iterations(20, false), 1.8 * lattice_iterations(20, true));
+}
+
 TEST(CoarseSpace, HasTheSameBitsForAnyThreadCount) {
   std::vector<State> states;
   for (const int threads : {1, 2, 5}) {
