@@ -97,7 +97,7 @@ def test_a_run_may_start_tangled_and_remembers_it(tmp_path):
         muslin.run(scene, tmp_path / "refused", frames=1)
     muslin.run(scene, tmp_path / "run", frames=1, allow_tangled=True)
     assert json.loads((tmp_path / "run/run.json").read_text())["allow_tangled"] is True
-    assert muslin.Run(tmp_path / "run").diagnostics()["min_distance"][0] < 0
+    assert muslin.Run(tmp_path / "run").diagnostics["min_distance"][0] < 0
     muslin.run(scene, tmp_path / "run", frames=2, resume=True)
     assert muslin.Run(tmp_path / "run").frame_count == 3
 
