@@ -105,6 +105,78 @@ TEST(ColliderRun, RefusesToResumeWithAnotherCollider) {
   EXPECT_THAT(outcome.err, HasSubstr("collider.1.radius"));
 }
 
+/// A patch of cloth lies on a slope of tan = 0.3, drawn level: gravity is tilted instead.
+void write_slope(const Scratch& scratch) {
+  write_mesh(scratch / "patch.obj", test::flat_sheet(3, 3, 0.1, 0.1));
+  test::write_bytes(scratch / "scene.toml",
+                    "[time]\nsteps_per_frame = 4\n"
+                    "[[body]]\nname = \"cloth\"\nmesh = \"patch.obj\"\nmodel = \"shell\"\n"
+                    "material = \"wool\"\ntranslate = [0, 0.0025, 0]\nfriction = 0.5\n"
+                    "[[collider]]\nname = \"slope\"\nshape = \"plane\"\n"
+                    "[contact]\ndistance = 0.001\nfriction = 0.5\nmode = \"converged\"\n"
+                    "[[force]]\ntype = \"gravity\"\nacceleration = [2.82, -9.4, 0]\n"
+                    "[[probe]]\nname = \"middle\"\nbody = \"cloth\"\nat = [0.05, 0.0025, 0.05]\n");
+}
+
+/// Mean velocity of the patch downhill [m/s].
+double downhill(const Scratch& scratch, int frame) {
+  const RunReader reader(scratch / "run");
+  double sum = 0;
+  const auto velocities = reader.velocities(reader.find_body("cloth"), SurfaceKind::skin, frame);
+  for (const Vec3f& v : velocities) sum += v.x();
+  return sum / static_cast<double>(velocities.size());
+}
+
+TEST(ColliderRun, GoesOnWithTheFrictionOfBodyAndColliderThatItIsGiven) {
+  const Scratch scratch;
+  write_slope(scratch);
+  const auto go_on = [&](int frames, const std::vector<std::string>& settings) {
+    std::vector<std::string> arguments = words(scratch, "run", frames);
+    arguments.emplace_back("--resume");
+    for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+    return run(scratch, arguments);
+  };
+  const auto points = [&] { return bytes_of(scratch / "run" / "cloth.skin.pc2"); };
+  // Mean acceleration between the middles of two frames [m/s2].
+  const auto acceleration = [&](int first, int last) {
+    return (downhill(scratch, last) - downhill(scratch, first)) * 24 / (last - first);
+  };
+
+  ASSERT_EQ(go_on(12, {}).code, 0);
+  EXPECT_NEAR(downhill(scratch, 11), 0, 1e-4) << "0.5 holds";
+  const std::string held = points();
+
+  // Of the body: with the collider's 0.5 it is 0.1 between them.
+  auto outcome = go_on(24, {"body.cloth.friction=0.02"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("resumed with body.0.friction\n"));
+  EXPECT_NEAR(acceleration(14, 22), 2.82 - 0.1 * 9.4, 0.02);
+  // What was written stays; only the count of samples in the head of the cache grows.
+  EXPECT_EQ(points().substr(32, held.size() - 32), held.substr(32));
+
+  // Of the collider, which had none of its own; the body's is what the file says again. 0.2 between them.
+  outcome = go_on(36, {"collider.slope.friction=0.08"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("resumed with body.0.friction\n"),
+                                          HasSubstr("resumed with collider.0.friction\n")));
+  EXPECT_NEAR(acceleration(26, 34), 2.82 - 0.2 * 9.4, 0.02);
+
+  // As it was at first: it brakes, and holds again.
+  ASSERT_EQ(go_on(66, {}).code, 0);
+  EXPECT_NEAR(acceleration(38, 44), 2.82 - 0.5 * 9.4, 0.02);
+  EXPECT_NEAR(downhill(scratch, 65), 0, 1e-4);
+  const auto sessions = nlohmann::json::parse(bytes_of(scratch / "run" / "run.json"))["timings"]["sessions"];
+  ASSERT_EQ(sessions.size(), 4u);
+  EXPECT_EQ(sessions[1]["changed"], (nlohmann::json{"body.0.friction"}));
+  EXPECT_EQ(sessions[3]["changed"], (nlohmann::json{"collider.0.friction"}));
+
+  // What is no friction is refused before anything is written.
+  outcome = go_on(70, {"body.cloth.friction=-0.1"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("friction"));
+  EXPECT_EQ(RunReader(scratch / "run").frame_count(), 67);
+}
+
 TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
   const Scratch scratch;
   write_scene(scratch);
