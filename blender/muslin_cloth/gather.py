@@ -34,6 +34,11 @@ def field_objects(scene):
     return [o for o in scene.objects if o.field and o.field.type != "NONE" and o.visible_get()]
 
 
+def own_friction(obj):
+    """None where the scene's is meant."""
+    return obj.muslin.friction if obj.muslin.use_friction else None
+
+
 def frame_rate(scene):
     return scene.render.fps / scene.render.fps_base
 
@@ -241,7 +246,8 @@ def scene_input(scene, names, snapshots, first, last):
     for obj in cloth_objects(scene):
         m, name = obj.muslin, names[obj.name]
         cloth = Cloth(name=name, model=m.model.lower(), material=m.fabric, thickness=m.thickness * scale,
-                      pinned=bool(snapshots[obj.name].pinned), self_contact=m.use_self_contact)
+                      pinned=bool(snapshots[obj.name].pinned), self_contact=m.use_self_contact,
+                      friction=own_friction(obj))
         if m.fabric.endswith(".toml"):
             cloth.material = bpy.path.abspath(m.fabric)
         if m.model == "LATTICE":
@@ -253,7 +259,7 @@ def scene_input(scene, names, snapshots, first, last):
             cloth.release = (max(m.release_frame - first, 0) + 0.5 / props.steps_per_frame) / rate
         result.cloths.append(cloth)
     for obj in collider_objects(scene):
-        result.colliders.append(Collider(names[obj.name]))
+        result.colliders.append(Collider(names[obj.name], friction=own_friction(obj)))
     return result
 
 

@@ -52,6 +52,10 @@ class PHYSICS_PT_muslin(MuslinPanel, Panel):
             if not scene.muslin.use_contact:
                 paragraph(layout, "Contact is switched off in the settings of the scene.", width, "ERROR")
                 layout.prop(scene.muslin, "use_contact")
+            column = layout.column()
+            column.use_property_split = True
+            column.enabled = scene.muslin.use_contact
+            draw_friction(column, obj.muslin)
             return
         session = baking(scene)
         state = session.state if session else bs.State()
@@ -139,7 +143,14 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
         column = layout.column()
         column.enabled = context.scene.muslin.use_contact
         column.prop(m, "use_self_contact")
+        draw_friction(column, m)
         draw_counts(layout, context, m)
+
+
+def draw_friction(column, m):
+    column.prop(m, "use_friction")
+    if m.use_friction:
+        column.prop(m, "friction")
 
 
 def draw_counts(layout, context, m):

@@ -42,6 +42,11 @@ class MuslinObject(bpy.types.PropertyGroup):
     release_frame: IntProperty(name="Release Frame", default=50)
     use_self_contact: BoolProperty(
         name="Self Contact", default=True, description="Touches itself; takes time where it does")
+    use_friction: BoolProperty(
+        name="Own Friction", description="Its surface has a friction of its own, not the one of the scene")
+    friction: FloatProperty(
+        name="Friction", default=0.3, min=0, max=100, soft_max=1,
+        description="Coulomb's coefficient of its surface; between two surfaces it is the geometric mean of theirs")
     rest_shape: EnumProperty(
         name="Rest Shape", description="The shape that is free of stress",
         items=[("START", "At the Start", "As it stands in the first frame"),
@@ -67,7 +72,9 @@ class MuslinScene(bpy.types.PropertyGroup):
         name="Contact Steps",
         items=[("FAST", "Fast", "A few iterations a step, for steps of 1/150 s or shorter; nothing crosses either way"),
                ("CONVERGED", "Converged", "Every step is solved: slower by far, and the bake stops where it cannot be")])
-    friction: FloatProperty(name="Friction", default=0.3, min=0, soft_max=1, description="Of cloth on everything")
+    friction: FloatProperty(
+        name="Friction", default=0.3, min=0, max=100, soft_max=1,
+        description="Coulomb's coefficient of cloth and colliders that have none of their own")
     keep_states: BoolProperty(
         name="Keep States", default=True,
         description="Keep the state of every frame, so that a bake can go on from any: 96 bytes per vertex and frame")

@@ -21,12 +21,14 @@ class Cloth:
     pinned: bool = False
     release: Optional[float] = None  # when the pin lets go [s]
     self_contact: bool = True
+    friction: Optional[float] = None  # None: the scene's
 
 
 @dataclass
 class Collider:
     name: str
     sequence: str = ""  # file name; "": stands still
+    friction: Optional[float] = None  # None: the scene's
 
 
 @dataclass
@@ -50,7 +52,7 @@ class SceneInput:
     colliders: List[Collider] = field(default_factory=list)
     contact: bool = True  # of cloth with itself, with other cloth and with colliders
     contact_mode: str = "fast"  # or "converged"
-    friction: float = 0.3
+    friction: float = 0.3  # of what has none of its own
 
 
 def body_names(names):
@@ -91,6 +93,8 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
             lines.append("contact = false")
         elif not cloth.self_contact:
             lines.append("self_contact = false")
+        if scene.contact and cloth.friction is not None:
+            lines.append(f"friction = {number(cloth.friction)}")
     for cloth in scene.cloths:
         if cloth.pinned:
             lines += ["", "[[pin]]"] + _pin(cloth, moving)
@@ -99,6 +103,8 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
                   f"mesh = {quoted(collider.name + '.obj')}"]
         if collider.sequence and moving:
             lines.append(f"sequence = {quoted(collider.sequence)}")
+        if collider.friction is not None:
+            lines.append(f"friction = {number(collider.friction)}")
     if scene.contact:
         lines += ["", "[contact]", f'mode = "{scene.contact_mode}"', f"friction = {number(scene.friction)}"]
     if any(scene.gravity):

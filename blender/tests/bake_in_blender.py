@@ -215,6 +215,27 @@ class Contact(HostTest):
         self.assertIn("sequence", (self.bake / "scene.toml").read_text())
         self.assertGreater(points(obj, 12)[6 * 13 + 6][2], 0.25, "it is carried up")
 
+    def test_friction_is_the_scenes_or_that_of_cloth_and_collider(self):
+        scene = bpy.context.scene
+        scene.frame_end, scene.muslin.steps_per_frame, scene.muslin.friction = 12, 8, 0.5
+        scene.gravity = (2.82, 0, -9.4)  # a slope of 0.3, seen from itself
+        box = self.box(2)
+        box.location.z = -1
+        obj = self.sheet(0.003, n=4)
+
+        def way():
+            bpy.ops.muslin.bake()
+            return (points(obj, 12)[:, 0] - points(obj, 1)[:, 0]).mean()
+
+        self.assertLess(way(), 0.01, "0.5 holds")
+        box.muslin.friction = 0.0
+        self.assertLess(way(), 0.01, "but is not asked for")
+        box.muslin.use_friction = True
+        free = 0.5 * 2.82 * (11 / scene.render.fps) ** 2
+        self.assertAlmostEqual(way(), free, delta=0.1 * free, msg="no friction on what has none")
+        box.muslin.friction, obj.muslin.use_friction, obj.muslin.friction = 0.02, True, 0.5
+        self.assertAlmostEqual(way(), free * (1 - 0.1 / 0.3), delta=0.1 * free, msg="0.1 is the mean of 0.02 and 0.5")
+
     def test_cloth_that_crosses_at_the_start_is_refused(self):
         box = self.box()
         box.location.z = 0.0

@@ -114,6 +114,7 @@ class SceneText(Scratch):
 
     def test_the_program_reads_it(self):
         scene = self.scene()
+        scene.cloths[0].friction = 0.18
         writer = point_cache.Writer(self.folder / "a b.pc2", 4)
         writer.append(np.zeros((4, 3)))
         writer.close()
@@ -144,6 +145,10 @@ class SceneText(Scratch):
         colliders = tomllib.loads(scene_text.scene_toml(scene))["collider"]
         self.assertEqual(colliders[0], {"name": "ball", "shape": "mesh", "mesh": "ball.obj"})
         self.assertEqual(colliders[1]["sequence"], "arm.pc2")
+        scene.cloths[0].friction, scene.colliders[1].friction = 0.0, 0.18
+        told = tomllib.loads(scene_text.scene_toml(scene))
+        self.assertEqual([b.get("friction") for b in told["body"]], [0, None])
+        self.assertEqual([c.get("friction") for c in told["collider"]], [None, 0.18])
         scene.contact = False
         told = tomllib.loads(scene_text.scene_toml(scene))
         self.assertFalse({"collider", "contact"} & set(told))
