@@ -149,6 +149,16 @@ def refused():
         return "again"
     assert "Delete Loose" in state.problem, state
     picture("7_refused")
+    bpy.ops.muslin.remove()
+    bpy.ops.muslin.collider_add()
+    obj = bpy.context.view_layer.objects.active
+    bpy.context.scene.muslin.use_contact = obj.muslin.use_friction = True
+
+
+@step
+def collider():
+    assert bpy.context.view_layer.objects.active.muslin.role == "COLLIDER"
+    picture("8_collider")
 
 
 def run():
