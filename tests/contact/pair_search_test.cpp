@@ -61,10 +61,11 @@ bool contains_once(const std::vector<Pair>& sorted, const Pair& pair) {
   return end - begin == 1;
 }
 
-FeaturePairs sorted_pairs(const Scene& scene, ConstVectors lower, ConstVectors upper, double reach) {
+FeaturePairs sorted_pairs(const Scene& scene, ConstVectors lower, ConstVectors upper, double reach,
+                          std::span<const std::uint8_t> moved = {}) {
   PairSearch search(scene.surface, scene.positions);
   FeaturePairs found;
-  search.find(lower, upper, reach, found);
+  search.find(lower, upper, reach, found, moved);
   std::sort(found.vertex_triangle.begin(), found.vertex_triangle.end());
   std::sort(found.edge_edge.begin(), found.edge_edge.end());
   return found;
@@ -141,6 +142,33 @@ TEST(PairSearch, CoversMotion) {
   }
 }
 
+TEST(PairSearch, FindsThePairsOfSomePointsAlone) {
+  const Scene scene;
+  const double reach = 0.06;
+  std::vector<std::uint8_t> moved(scene.positions.size(), 0);
+  for (const std::size_t p : {3, 40, 41, 100}) moved[p] = 1;
+  moved.back() = 1;
+  const FeaturePairs all = sorted_pairs(scene, scene.positions, scene.positions, reach),
+                     some = sorted_pairs(scene, scene.positions, scene.positions, reach, moved);
+  const auto has_moved = [&](int p) { return moved[static_cast<std::size_t>(p)] != 0; };
+  FeaturePairs expected;
+  for (const VertexTriangle& pair : all.vertex_triangle) {
+    const Vec3i& t = scene.surface->triangles()[static_cast<std::size_t>(pair.triangle)];
+    if (has_moved(pair.point) || has_moved(t[0]) || has_moved(t[1]) || has_moved(t[2]))
+      expected.vertex_triangle.push_back(pair);
+  }
+  for (const EdgeEdge& pair : all.edge_edge) {
+    const auto& e = scene.surface->edges()[static_cast<std::size_t>(pair.first)];
+    const auto& f = scene.surface->edges()[static_cast<std::size_t>(pair.second)];
+    if (has_moved(e[0]) || has_moved(e[1]) || has_moved(f[0]) || has_moved(f[1]))
+      expected.edge_edge.push_back(pair);
+  }
+  EXPECT_GT(expected.edge_edge.size(), 10);
+  EXPECT_LT(expected.edge_edge.size(), all.edge_edge.size() / 3);
+  EXPECT_EQ(some.vertex_triangle, expected.vertex_triangle);
+  EXPECT_EQ(some.edge_edge, expected.edge_edge);
+}
+
 TEST(PairSearch, LeavesOutSelfContactWhenToldTo) {
   const Scene scene(false);
   const FeaturePairs found = sorted_pairs(scene, scene.positions, scene.positions, 0.03);
@@ -195,6 +223,46 @@ TEST(ContactCandidates, GiveThickClothOnAFineMeshNoContactAtRest) {
   EXPECT_NEAR(test::distances_at(candidates, folded).smallest_gap(), 0.001, 1e-3);
   EXPECT_TRUE(std::any_of(candidates.pairs().begin(), candidates.pairs().end(),
                           [](const ContactPair& pair) { return pair.thickness == 0.008; }));
+}
+
+TEST(ContactCandidates, AreCompleteAfterSomePointsWereFoundAnew) {
+  // A few points move far beyond their boxes, the others stay within theirs: whatever is in range then is a
+  // candidate, once, and what is said of its distance holds.
+  const Scene scene;
+  const double range = 0.02, margin = 0.005;
+  ContactCandidates candidates(scene.surface, scene.positions, range);
+  candidates.update(scene.positions, scene.positions, margin);
+  Scene now = scene;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> little(-margin, margin), far(-0.15, 0.15);
+  std::vector<std::uint8_t> moved(scene.positions.size(), 0);
+  for (std::size_t p = 0; p < moved.size(); ++p) {
+    moved[p] = p % 9 == 0 ? 1 : 0;
+    for (int k = 0; k < 3; ++k) now.positions[p][k] += moved[p] != 0 ? far(random) : little(random);
+  }
+  const std::size_t before = candidates.pairs().size();
+  candidates.renew(moved, scene.positions, now.positions, margin);
+  EXPECT_NE(candidates.pairs().size(), before);
+  std::vector<std::uint64_t> keys;
+  for (const ContactPair& pair : candidates.pairs()) keys.push_back(pair.key());
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+  ASSERT_EQ(candidates.least_distances().size(), candidates.pairs().size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const double distance =
+        pair_geometry(*scene.surface, candidates.pairs()[i], candidates.found_at()).distance;
+    EXPECT_LE(candidates.least_distances()[i], distance + 1e-6);
+  }
+
+  ContactCandidates fresh(scene.surface, scene.positions, range);
+  fresh.update(now.positions, now.positions, 0);
+  int close = 0;
+  for (const ContactPair& pair : fresh.pairs()) {
+    if (pair_geometry(*scene.surface, pair, now.positions).distance > pair.thickness + pair.range) continue;
+    ++close;
+    EXPECT_TRUE(std::binary_search(keys.begin(), keys.end(), pair.key()));
+  }
+  EXPECT_GT(close, 50);
 }
 
 TEST(ContactSurface, OwnsEachFeatureOnce) {

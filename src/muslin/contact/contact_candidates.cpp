@@ -12,7 +12,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t grain = 256;
 
 /// Of a rest distance, how much thickness and range together may take.
 constexpr double rest_thickness = 0.5, rest_range = 0.4;
@@ -163,7 +163,37 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
     upper_[p] = begin[p].cwiseMax(end[p]).array() + margin;
   }
   search_.find(lower_, upper_, contact_distance_, found_);
-  culling_.set_points(*surface_, begin, lower_, upper_);
+  pairs_.clear();
+  least_distances_.clear();
+  add_near_pairs();
+}
+
+void ContactCandidates::renew(std::span<const std::uint8_t> moved, ConstVectors begin, ConstVectors end,
+                              double margin) {
+  const auto has_moved = [&](int p) { return moved[static_cast<std::size_t>(p)] != 0; };
+  for (std::size_t p = 0; p < lower_.size(); ++p) {
+    if (moved[p] == 0) continue;
+    lower_[p] = begin[p].cwiseMin(end[p]).array() - margin;
+    upper_[p] = begin[p].cwiseMax(end[p]).array() + margin;
+  }
+  search_.find(lower_, upper_, contact_distance_, found_, moved);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const std::array<int, 4>& p = pairs_[i].points;
+    if (pairs_[i].kind == PairKind::point_plane || has_moved(p[0]) || has_moved(p[1]) || has_moved(p[2]) ||
+        has_moved(p[3]))
+      continue;
+    pairs_[kept] = pairs_[i];
+    least_distances_[kept++] = least_distances_[i];
+  }
+  pairs_.resize(kept);
+  least_distances_.resize(kept);
+  add_near_pairs();
+}
+
+/// Of what the search has found, and of planes.
+void ContactCandidates::add_near_pairs() {
+  culling_.set_points(*surface_, found_at_, lower_, upper_);
   const auto blocks = [](std::size_t count) { return (count + grain - 1) / grain; };
   const std::size_t vertex_triangle = blocks(found_.vertex_triangle.size());
   std::vector<Near> parts(vertex_triangle + blocks(found_.edge_edge.size()));
@@ -179,8 +209,6 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
       }
     }
   });
-  pairs_.clear();
-  least_distances_.clear();
   for (const Near& part : parts) {
     pairs_.insert(pairs_.end(), part.pairs.begin(), part.pairs.end());
     least_distances_.insert(least_distances_.end(), part.distances.begin(), part.distances.end());

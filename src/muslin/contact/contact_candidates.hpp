@@ -57,14 +57,17 @@ class ContactCandidates {
   /// Finds the pairs that may come within range while every point stays in the box of its positions at
   /// `begin` and `end` (#P by 3, [m]), widened by `margin` [m] on all sides.
   void update(ConstVectors begin, ConstVectors end, double margin);
+  /// The same for those points alone whose `moved` (#P) is not zero: the others stay in the boxes they have,
+  /// and pairs without a moved point are as they were.
+  void renew(std::span<const std::uint8_t> moved, ConstVectors begin, ConstVectors end, double margin);
 
   const ContactSurface& surface() const { return *surface_; }
   std::shared_ptr<const ContactSurface> shared_surface() const { return surface_; }
   double contact_distance() const { return contact_distance_; }
   std::span<const ContactPair> pairs() const { return pairs_; }
-  /// #pairs: no more than the distance of each pair where it was found [m]; of planes 0.
+  /// #pairs: no more than the distance of each pair at `found_at` [m]; of planes 0.
   std::span<const float> least_distances() const { return least_distances_; }
-  /// That place, #P by 3 [m]: the `begin` of the last update.
+  /// Where those distances are meant, #P by 3 [m]: the `begin` of the last update.
   ConstVectors found_at() const { return found_at_; }
   /// The boxes in which the pairs are complete, #P by 3 [m].
   ConstVectors lower() const { return lower_; }
@@ -81,6 +84,7 @@ class ContactCandidates {
   /// Appends those that may come into range.
   template <class Pair>
   void add_near(PairKind kind, std::span<const Pair> found, Near& out) const;
+  void add_near_pairs();
   void add_near_plane(int plane);
   void add_near_turning_plane(int plane);
 

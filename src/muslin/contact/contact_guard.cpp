@@ -13,6 +13,8 @@ namespace {
 
 /// Boxes of candidates are wider than the motion by this share of d̂.
 constexpr double margin_share = 0.5;
+/// Where no more than this share of the points leaves its boxes, only theirs are found anew.
+constexpr double renewed_share = 0.3;
 /// What is pushed goes this much farther than what pushes it, along slanting normals.
 constexpr double pushed_share = 1.5;
 /// Displacements of more edges than this are limited in pieces, of which there are no more than so many.
@@ -76,6 +78,7 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model)
 }
 
 void ContactGuard::begin(ConstVectors q, double length, std::span<const std::uint8_t> held) {
+  forget_renewed();
   start_.assign(q.begin(), q.end());
   friction_.stick_length = stick_speed * length;
   held_.assign(held.begin(), held.end());
@@ -89,6 +92,7 @@ void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end, double 
   memory_.begin.assign(begin.begin(), begin.end());
   memory_.end.assign(end.begin(), end.end());
   memory_.margin = margin;
+  renewed_ = false;
   candidates_.update(begin, end, margin);
   distances_.forget();
 }
@@ -108,15 +112,33 @@ void ContactGuard::cover(ConstVectors q, ConstVectors d) {
   push *= pushed_share;
   model_->map->apply(q, x_);
   model_->map->apply(d, to_);
-  bool covered = !candidates_.lower().empty();
+  for (std::size_t p = 0; p < x_.size(); ++p) to_[p] += x_[p];
+  if (memory_.begin.empty()) return find_candidates(x_, to_, margin_ + push);
+  outside_.resize(x_.size());
+  std::size_t count = 0;
   for (std::size_t p = 0; p < x_.size(); ++p) {
-    to_[p] += x_[p];
-    if (!covered) continue;
     const Vec3 &low = candidates_.lower()[p], &high = candidates_.upper()[p];
-    covered = (x_[p].array() - push >= low.array()).all() && (x_[p].array() + push <= high.array()).all() &&
-              (to_[p].array() - push >= low.array()).all() && (to_[p].array() + push <= high.array()).all();
+    const bool inside = (x_[p].cwiseMin(to_[p]).array() - push >= low.array()).all() &&
+                        (x_[p].cwiseMax(to_[p]).array() + push <= high.array()).all();
+    outside_[p] = inside ? 0 : 1;
+    count += outside_[p];
   }
-  if (!covered) find_candidates(x_, to_, margin_ + push);
+  if (static_cast<double>(count) > renewed_share * static_cast<double>(x_.size()))
+    return find_candidates(x_, to_, margin_ + push);
+  if (count == 0) return;
+  const Stopwatch watch(counts_.search_seconds);
+  ++counts_.searches;
+  candidates_.renew(outside_, x_, to_, margin_ + push);
+  distances_.forget();
+  renewed_ = true;
+}
+
+/// A run that is resumed finds candidates as memory_ tells.
+void ContactGuard::forget_renewed() {
+  if (!renewed_) return;
+  memory_.begin.clear();
+  memory_.end.clear();
+  renewed_ = false;
 }
 
 /// A displacement far beyond an edge's length is a blunder of the solver, and would make everything a
@@ -176,7 +198,7 @@ void ContactGuard::advance(Vectors q, ConstVectors d) {
 }
 
 const Potential& ContactGuard::potential(ConstVectors q) {
-  if (candidates_.lower().empty()) {
+  if (memory_.begin.empty()) {
     piece_.assign(q.size(), Vec3::Zero());
     cover(q, piece_);
   }
@@ -198,6 +220,7 @@ void ContactGuard::end(ConstVectors q) {
   };
   for (const auto& [first, second] : tangled_)
     memory_.smallest_gap = std::min(memory_.smallest_gap, 0.0 - (radius(first) + radius(second)));
+  forget_renewed();
 }
 
 /// Pairs of triangles that cross at q.

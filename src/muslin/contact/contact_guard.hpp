@@ -21,11 +21,12 @@ namespace muslin {
 
 /// What contact remembers between steps, besides positions: a run that goes on with it gives the same bits.
 struct ContactMemory {
-  std::vector<PairSlip> slips;   ///< by ascending key
-  std::vector<Vec3> begin, end;  ///< what candidates were found for, #P by 3 [m]; empty: not yet
-  double margin = 0;             ///< by which their boxes are wider [m]
-  double smallest_gap =          ///< at the end of the last step [m]; infinite beyond d̂; −thickness
-                                 ///< where triangles cross
+  std::vector<PairSlip> slips;  ///< by ascending key
+  std::vector<Vec3> begin,
+      end;               ///< what candidates were found for, #P by 3 [m]; empty: they must be found anew
+  double margin = 0;     ///< by which their boxes are wider [m]
+  double smallest_gap =  ///< at the end of the last step [m]; infinite beyond d̂; −thickness
+                         ///< where triangles cross
       std::numeric_limits<double>::infinity();
 };
 
@@ -68,6 +69,7 @@ class ContactGuard : public StepGuard {
   void find_candidates(ConstVectors begin, ConstVectors end, double margin);
   /// As they were found last.
   void find_again();
+  void forget_renewed();
   void measure(ConstVectors q);
   void cover(ConstVectors q, ConstVectors d);
   void shorten(Vectors d) const;
@@ -88,6 +90,8 @@ class ContactGuard : public StepGuard {
   ContactMemory memory_;
   ContactCounts counts_;
   std::vector<Vec3> x_, to_, piece_;
+  std::vector<std::uint8_t> outside_;  ///< points that leave the boxes of the candidates
+  bool renewed_ = false;  ///< whether the candidates of some points are others than memory_ tells
 };
 
 }  // namespace muslin

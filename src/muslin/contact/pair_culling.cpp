@@ -14,7 +14,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t grain = 512;
 
 /// Eight vectors.
 struct Lanes3 {
@@ -85,6 +85,7 @@ void PairCulling::set_points(const ContactSurface& surface, ConstVectors at, Con
                              ConstVectors upper) {
   Box all;
   for (std::size_t p = 0; p < lower.size(); ++p) {
+    all.extend(at[p]);
     all.extend(lower[p]);
     all.extend(upper[p]);
   }

@@ -130,7 +130,9 @@ struct PairSearch::Tree {
   Groups groups;
   std::vector<Task> tasks;
   std::vector<FloatBox> node_boxes, point_boxes;
-  std::vector<std::uint8_t> lone;  ///< points that are a triangle (a, a, a)
+  std::vector<std::uint8_t> lone;        ///< points that are a triangle (a, a, a)
+  std::span<const std::uint8_t> moved;   ///< of the present search; empty: all
+  std::vector<std::uint8_t> node_moved;  ///< whether there is such a point in the node
 
   Tree(std::shared_ptr<const ContactSurface> surface_, ConstVectors positions)
       : surface(std::move(surface_)) {
@@ -313,6 +315,42 @@ struct PairSearch::Tree {
       }
       node_boxes[n] = box;
     }
+    find_moved_nodes();
+  }
+
+  bool has_moved(int point) const { return moved[static_cast<std::size_t>(point)] != 0; }
+
+  void find_moved_nodes() {
+    if (moved.empty()) return;
+    node_moved.resize(nodes.size());
+    for (std::size_t n = nodes.size(); n-- > 0;) {
+      const Node& node = nodes[n];
+      if (node.right >= 0) {
+        node_moved[n] = node_moved[n + 1] | node_moved[static_cast<std::size_t>(node.right)];
+        continue;
+      }
+      const FeatureLanes& lanes = groups.triangles[static_cast<std::size_t>(node.leaf)];
+      node_moved[n] = 0;
+      for (int i = 0; i < lane_count && lanes.id[i] >= 0; ++i)
+        for (const Int8& corners : lanes.points) node_moved[n] |= moved[static_cast<std::size_t>(corners[i])];
+    }
+  }
+  bool concerns(const NodePair& pair) const {
+    return moved.empty() ||
+           (node_moved[static_cast<std::size_t>(pair.a)] | node_moved[static_cast<std::size_t>(pair.b)]) != 0;
+  }
+
+  void leave_out_unmoved(FeaturePairs& found) const {
+    if (moved.empty()) return;
+    std::erase_if(found.vertex_triangle, [&](const VertexTriangle& pair) {
+      const Vec3i& t = surface->triangles()[static_cast<std::size_t>(pair.triangle)];
+      return !has_moved(pair.point) && !has_moved(t[0]) && !has_moved(t[1]) && !has_moved(t[2]);
+    });
+    std::erase_if(found.edge_edge, [&](const EdgeEdge& pair) {
+      const auto &e = surface->edges()[static_cast<std::size_t>(pair.first)],
+                 &f = surface->edges()[static_cast<std::size_t>(pair.second)];
+      return !has_moved(e[0]) && !has_moved(e[1]) && !has_moved(f[0]) && !has_moved(f[1]);
+    });
   }
 
   /// What the boxes do not know: bodies that may not touch, and that a vertex meets a lone point as that
@@ -342,6 +380,7 @@ struct PairSearch::Tree {
     while (!task.stack.empty()) {
       const NodePair pair = task.stack.back();
       task.stack.pop_back();
+      if (!concerns(pair)) continue;
       if (pair.a != pair.b && !overlap(node_boxes[static_cast<std::size_t>(pair.a)],
                                        node_boxes[static_cast<std::size_t>(pair.b)]))
         continue;
@@ -354,6 +393,7 @@ struct PairSearch::Tree {
     }
     compare_leaves(groups, task.leaves, task.found);
     leave_out_unwanted(task.found);
+    leave_out_unmoved(task.found);
   }
 };
 
@@ -366,8 +406,10 @@ PairSearch::~PairSearch() = default;
 PairSearch::PairSearch(PairSearch&&) noexcept = default;
 PairSearch& PairSearch::operator=(PairSearch&&) noexcept = default;
 
-void PairSearch::find(ConstVectors lower, ConstVectors upper, double reach, FeaturePairs& found) {
+void PairSearch::find(ConstVectors lower, ConstVectors upper, double reach, FeaturePairs& found,
+                      std::span<const std::uint8_t> moved) {
   Tree& tree = *tree_;
+  tree.moved = moved;
   tree.fit(lower, upper, reach);
   parallel_for(tree.tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) tree.run(tree.tasks[i]);

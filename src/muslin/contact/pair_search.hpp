@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -46,7 +47,9 @@ class PairSearch {
   /// All pairs that can come within radius + radius + `reach` [m] of each other while every point stays in
   /// its box lower … upper (#P by 3, [m]); and some more, for boxes are not the features. `found` is
   /// overwritten; its memory is used again.
-  void find(ConstVectors lower, ConstVectors upper, double reach, FeaturePairs& found);
+  /// `moved` (#P, or empty for all points): only pairs that have a point where this is not zero.
+  void find(ConstVectors lower, ConstVectors upper, double reach, FeaturePairs& found,
+            std::span<const std::uint8_t> moved = {});
 
  private:
   struct Tree;
