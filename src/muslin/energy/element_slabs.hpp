@@ -35,8 +35,9 @@ class ElementSlabs {
   /// `vertex_count` is that of the body; elements index its vertices.
   ElementSlabs(const std::vector<std::array<int, N>>& elements, std::size_t vertex_count) {
     const int count = static_cast<int>(vertex_count);
-    const int size = std::clamp(count / 8, 512, 4096);
-    const int slabs = std::max(1, (count + size - 1) / size);
+    // Of equal size. Smaller ones would have more elements between them.
+    const int slabs = std::max({1, std::min(8, count / 640), count / 4096});
+    const int size = std::max(1, (count + slabs - 1) / slabs);
     std::vector<std::vector<int>> owned(static_cast<std::size_t>(slabs)), borrowed = owned;
     for (std::size_t e = 0; e < elements.size(); ++e) {
       std::array<int, N> at = elements[e];
@@ -112,6 +113,17 @@ class ElementSlabs {
       for (int c = 0; c < N; ++c) {
         const Vec3& from = x[static_cast<std::size_t>(vertices[static_cast<std::size_t>(c)])];
         for (int axis = 0; axis < 3; ++axis) out[c][axis][l] = from[axis];
+      }
+    }
+  }
+
+  /// By entry: a bit for each corner that lies in the slab.
+  void corners_in(int first, int count, const Slab& slab, unsigned* bits) const {
+    for (int l = 0; l < count; ++l) {
+      bits[l] = 0;
+      for (int c = 0; c < N; ++c) {
+        const int v = vertices_[static_cast<std::size_t>(first + l)][static_cast<std::size_t>(c)];
+        if (v >= slab.vertex_begin && v < slab.vertex_end) bits[l] |= 1U << c;
       }
     }
   }

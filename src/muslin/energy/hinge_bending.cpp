@@ -204,6 +204,28 @@ double rigidity(const BendingModuli& m, double warp_share) {
          (4 * m.bias - m.warp - m.weft) * warp_share * weft_share;
 }
 
+/// blocks += scale k g gᵀ of each lane, in those rows that `rows` has a bit for.
+MUSLIN_VECTOR_CODE void add_squares(const Batch<4>& g, const double* stiffness, double scale, int count,
+                                    const unsigned* rows, const std::array<int, 16>* slots, Float4* blocks) {
+  float d[4][3][lanes];
+  for (int l = 0; l < lanes; ++l) {
+    const double root = std::sqrt(scale * stiffness[l]);
+    for (int c = 0; c < 4; ++c)
+      for (int k = 0; k < 3; ++k) d[c][k][l] = static_cast<float>(root * g[c][k][l]);
+  }
+  for (int l = 0; l < count; ++l) {
+    for (int i = 0; i < 4; ++i) {
+      if ((rows[l] >> i & 1U) == 0) continue;
+      const Float4 along = {d[i][0][l], d[i][1][l], d[i][2][l], 0};
+      for (int j = 0; j < 4; ++j) {
+        Float4* const block =
+            blocks + 3 * static_cast<std::ptrdiff_t>(slots[l][static_cast<std::size_t>(4 * i + j)]);
+        for (int k = 0; k < 3; ++k) block[k] += d[j][k][l] * along;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 double lowest_bias(double warp, double weft) {
@@ -280,23 +302,9 @@ void HingeBending::add_stiffness_matrix(Stiffness, ConstVectors x, double scale,
     Batch<4> corners, g;
     slabs_.gather(first, count, x, corners);
     angle_gradients(corners, g);
-    for (int l = 0; l < count; ++l) {
-      const auto entry = static_cast<std::size_t>(first + l);
-      const double root = std::sqrt(scale * stiffness_[entry]);
-      Float4 d[4];
-      for (std::size_t c = 0; c < 4; ++c) {
-        d[c] = Float4{static_cast<float>(root * g[c][0][l]), static_cast<float>(root * g[c][1][l]),
-                      static_cast<float>(root * g[c][2][l]), 0};
-      }
-      for (std::size_t i = 0; i < 4; ++i) {
-        const int at = slabs_.vertices()[entry][i];
-        if (at < slab.vertex_begin || at >= slab.vertex_end) continue;
-        for (std::size_t j = 0; j < 4; ++j) {
-          Float4* block = matrix.block(slots_[entry][4 * i + j]);
-          for (int k = 0; k < 3; ++k) block[k] += d[j][k] * d[i];
-        }
-      }
-    }
+    unsigned rows[lanes];
+    slabs_.corners_in(first, count, slab, rows);
+    add_squares(g, stiffness_.data() + first, scale, count, rows, slots_.data() + first, matrix.block(0));
   });
 }
 

@@ -145,6 +145,77 @@ MUSLIN_VECTOR_CODE void strained_of_kind(const MembraneEnergy::Constants& c, Sti
   stress_of_kind(kind, s);
 }
 
+/// What the block of corners i and j is made of, for i ≤ j in the order (0,0), (0,1), (0,2), (1,1), (1,2),
+/// (2,2): aa a aᵀ + ba b aᵀ + ab a bᵀ + bb b bᵀ + geometric 1, in columns along corner j.
+struct BlockFactors {
+  float a[3][lanes], b[3][lanes];
+  float aa[6][lanes], ab[6][lanes], ba[6][lanes], bb[6][lanes], geometric[6][lanes];
+};
+
+MUSLIN_VECTOR_CODE void block_factors(const MembraneEnergy::Constants& c, Stiffness kind, const Rest& rest,
+                                      double scale, const Batch<3>& x, BlockFactors& f) {
+  Strained s;
+  strain(c, rest, x, s);
+  stress_of_kind(kind, s);
+  double u[3][lanes], v[3][lanes], area[lanes];
+  for (int l = 0; l < lanes; ++l) {
+    u[0][l] = -(rest.d00[l] + rest.d10[l]), u[1][l] = rest.d00[l], u[2][l] = rest.d10[l];
+    v[0][l] = -(rest.d01[l] + rest.d11[l]), v[1][l] = rest.d01[l], v[2][l] = rest.d11[l];
+    area[l] = scale * rest.area[l];
+  }
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < lanes; ++l) {
+      f.a[k][l] = static_cast<float>(s.a[k][l]);
+      f.b[k][l] = static_cast<float>(s.b[k][l]);
+    }
+  }
+  int pair = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j, ++pair) {
+      for (int l = 0; l < lanes; ++l) {
+        const double uu = u[i][l] * u[j][l], vv = v[i][l] * v[j][l];
+        const double uv = u[i][l] * v[j][l], vu = v[i][l] * u[j][l];
+        f.aa[pair][l] = static_cast<float>(area[l] * (c.c11 * uu + c.g * vv));
+        f.bb[pair][l] = static_cast<float>(area[l] * (c.c22 * vv + c.g * uu));
+        f.ab[pair][l] = static_cast<float>(area[l] * (c.c12 * uv + c.g * vu));
+        f.ba[pair][l] = static_cast<float>(area[l] * (c.c12 * vu + c.g * uv));
+        f.geometric[pair][l] =
+            static_cast<float>(scale * (s.suu[l] * uu + s.svv[l] * vv + s.suv[l] * (uv + vu)));
+      }
+    }
+  }
+}
+
+/// Adds the blocks of those rows of lane l that `rows` has a bit for.
+MUSLIN_INLINE void add_block_rows(const BlockFactors& f, int l, unsigned rows, const int* slots,
+                                  Float4* blocks) {
+  const Float4 a = {f.a[0][l], f.a[1][l], f.a[2][l], 0}, b = {f.b[0][l], f.b[1][l], f.b[2][l], 0};
+  Float4 by_a[2][3], by_b[2][3];
+  for (int k = 0; k < 3; ++k) {
+    by_a[0][k] = a[k] * a, by_a[1][k] = a[k] * b;
+    by_b[0][k] = b[k] * a, by_b[1][k] = b[k] * b;
+  }
+  constexpr Float4 unit[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  const auto add = [&](int slot, int pair, float ab, float ba) {
+    Float4* const block = blocks + 3 * static_cast<std::ptrdiff_t>(slot);
+    for (int k = 0; k < 3; ++k) {
+      block[k] += (f.aa[pair][l] * by_a[0][k] + ab * by_b[0][k]) +
+                  (ba * by_a[1][k] + f.bb[pair][l] * by_b[1][k]) + f.geometric[pair][l] * unit[k];
+    }
+  };
+  int pair = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j, ++pair) {
+      if ((rows >> i & 1U) != 0) add(slots[3 * i + j], pair, f.ab[pair][l], f.ba[pair][l]);
+      if (j > i && (rows >> j & 1U) != 0) add(slots[3 * j + i], pair, f.ba[pair][l], f.ab[pair][l]);
+    }
+  }
+}
+MUSLIN_VECTOR_CODE void add_blocks(const BlockFactors& f, int count, const unsigned* rows,
+                                   const std::array<int, 9>* slots, Float4* blocks) {
+  for (int l = 0; l < count; ++l) add_block_rows(f, l, rows[l], slots[l].data(), blocks);
+}
+
 std::vector<std::array<int, 3>> corners_of(const Shell& shell) {
   std::vector<std::array<int, 3>> corners;
   for (const Vec3i& t : shell.triangles) corners.push_back({t[0], t[1], t[2]});
@@ -240,40 +311,14 @@ void MembraneEnergy::add_stiffness_blocks(Stiffness kind, ConstVectors x, std::s
 
 void MembraneEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
                                           BlockMatrix& matrix) const {
-  const auto& c = constants_;
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {
     Batch<3> corners;
-    Strained s;
+    BlockFactors factors;
     slabs_.gather(first, count, x, corners);
-    const Rest rest = rest_at(rest_, first);
-    strained_of_kind(c, kind, rest, corners, s);
-    for (int l = 0; l < count; ++l) {
-      const auto entry = static_cast<std::size_t>(first + l);
-      float a[3], b[3];
-      for (int k = 0; k < 3; ++k) a[k] = static_cast<float>(s.a[k][l]), b[k] = static_cast<float>(s.b[k][l]);
-      const Float4 va = {a[0], a[1], a[2], 0}, vb = {b[0], b[1], b[2], 0};
-      const double u[3] = {-(rest.d00[l] + rest.d10[l]), rest.d00[l], rest.d10[l]};
-      const double v[3] = {-(rest.d01[l] + rest.d11[l]), rest.d01[l], rest.d11[l]};
-      const double area = scale * rest.area[l];
-      for (std::size_t i = 0; i < 3; ++i) {
-        const int at = slabs_.vertices()[entry][i];
-        if (at < slab.vertex_begin || at >= slab.vertex_end) continue;
-        for (std::size_t j = 0; j < 3; ++j) {
-          const auto aa = static_cast<float>(area * (c.c11 * u[i] * u[j] + c.g * v[i] * v[j]));
-          const auto bb = static_cast<float>(area * (c.c22 * v[i] * v[j] + c.g * u[i] * u[j]));
-          const auto ab = static_cast<float>(area * (c.c12 * u[i] * v[j] + c.g * v[i] * u[j]));
-          const auto ba = static_cast<float>(area * (c.c12 * v[i] * u[j] + c.g * u[i] * v[j]));
-          const auto geometric = static_cast<float>(scale * (s.suu[l] * u[i] * u[j] + s.svv[l] * v[i] * v[j] +
-                                                             s.suv[l] * (u[i] * v[j] + v[i] * u[j])));
-          Float4* block = matrix.block(slots_[entry][3 * i + j]);
-          for (int k = 0; k < 3; ++k) {
-            Float4 column = (aa * a[k] + ab * b[k]) * va + (ba * a[k] + bb * b[k]) * vb;
-            column[k] += geometric;
-            block[k] += column;
-          }
-        }
-      }
-    }
+    block_factors(constants_, kind, rest_at(rest_, first), scale, corners, factors);
+    unsigned rows[lanes];
+    slabs_.corners_in(first, count, slab, rows);
+    add_blocks(factors, count, rows, slots_.data() + first, matrix.block(0));
   });
 }
 
