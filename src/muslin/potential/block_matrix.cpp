@@ -9,7 +9,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024;  // rows
+constexpr std::size_t grain = 256;  // rows
 
 MUSLIN_VECTOR_CODE double add_rows(const int* first, const int* columns, const Float4* blocks, Floats p,
                                    Floats y, std::size_t begin, std::size_t end) {
@@ -52,6 +52,7 @@ BlockPattern::BlockPattern(std::vector<std::pair<int, int>> pairs, std::size_t v
   columns_.reserve(pairs.size());
   for (const auto& [row, column] : pairs) {
     ++first_[static_cast<std::size_t>(row) + 1];
+    if (row == column) diagonal_.push_back(static_cast<int>(columns_.size()));
     columns_.push_back(column);
   }
   for (std::size_t v = 0; v < vertex_count; ++v) first_[v + 1] += first_[v];
@@ -84,7 +85,7 @@ double BlockMatrix::add_product(Floats p, Floats y) const {
 void BlockMatrix::add_diagonal(Floats upper, Floats lower) const {
   parallel_for(pattern_->vertex_count(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const Float4* c = block(pattern_->find(static_cast<int>(v), static_cast<int>(v)));
+      const Float4* c = block(pattern_->diagonal()[v]);
       upper.x[v] += c[0][0];
       upper.y[v] += c[1][0];
       upper.z[v] += c[2][0];

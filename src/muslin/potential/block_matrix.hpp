@@ -24,12 +24,16 @@ class BlockPattern {
   /// Row v has blocks first()[v] … first()[v+1] − 1, in ascending order of their columns.
   const std::vector<int>& first() const { return first_; }
   const std::vector<int>& columns() const { return columns_; }
+  /// The diagonal block of each row.
+  const std::vector<int>& diagonal() const { return diagonal_; }
   /// The block of row and column, which must be there.
   int find(int row, int column) const;
-  std::size_t bytes() const { return (first_.capacity() + columns_.capacity()) * sizeof(int); }
+  std::size_t bytes() const {
+    return (first_.capacity() + columns_.capacity() + diagonal_.capacity()) * sizeof(int);
+  }
 
  private:
-  std::vector<int> first_, columns_;
+  std::vector<int> first_, columns_, diagonal_;
 };
 
 class BlockMatrix {

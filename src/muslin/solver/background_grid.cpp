@@ -269,6 +269,35 @@ void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const Backg
   }
 }
 
+RowOfBlocks::RowOfBlocks(const BackgroundGrid& grid, const GridMatrix& matrix,
+                         const BackgroundGrid::Point& row, Float4* half)
+    : grid_(grid), matrix_(matrix), half_(half), row_cell_(row.cell) {
+  if (row_cell_ >= 0) row_count_ = grid.weights(row, weights_).count;
+}
+
+void RowOfBlocks::add(const BackgroundGrid::Point& column, const Float4* block) {
+  if (row_cell_ < 0 || column.cell < 0) return;
+  if (column.cell != cell_) {
+    flush();
+    cell_ = column.cell;
+    count_ = grid_.cells()[at(cell_)].count;
+    std::fill(sums_, sums_ + count_, Block3{});
+  }
+  float w[8];
+  grid_.weights(column, w);
+  for (int l = 0; l < count_; ++l)
+    sums_[l].x += w[l] * block[0], sums_[l].y += w[l] * block[1], sums_[l].z += w[l] * block[2];
+}
+
+void RowOfBlocks::flush() {
+  if (cell_ < 0) return;
+  const GridMatrix::Table& table = matrix_.table(row_cell_, cell_);
+  for (int k = 0; k < row_count_; ++k) {
+    if (weights_[k] == 0) continue;
+    for (int l = 0; l < count_; ++l) add_to(half_, table[at(8 * k + l)], weights_[k], sums_[l]);
+  }
+}
+
 void add_coupling(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& a,
                   const BackgroundGrid::Point& b, const Block3& block, Float4* half) {
   add_block(grid, matrix, a, block, half);

@@ -116,6 +116,30 @@ void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const Backg
                const Block3& block, Float4* half);
 void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& row,
                const BackgroundGrid::Point& column, const Block3& block, Float4* half);
+
+/// half += Pᵀ B P of blocks between one point and several: blocks of one cell after the other are summed with
+/// their weights before those of the row join.
+class RowOfBlocks {
+ public:
+  RowOfBlocks(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& row,
+              Float4* half);
+  ~RowOfBlocks() { flush(); }
+  RowOfBlocks(const RowOfBlocks&) = delete;
+  RowOfBlocks& operator=(const RowOfBlocks&) = delete;
+  /// `block`: three columns.
+  void add(const BackgroundGrid::Point& column, const Float4* block);
+
+ private:
+  void flush();
+
+  const BackgroundGrid& grid_;
+  const GridMatrix& matrix_;
+  Float4* half_;
+  int row_cell_, cell_ = -1;
+  int row_count_ = 0, count_ = 0;
+  float weights_[8];
+  Block3 sums_[8];
+};
 void add_coupling(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& a,
                   const BackgroundGrid::Point& b, const Block3& block, Float4* half);
 

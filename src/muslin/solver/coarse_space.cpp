@@ -14,7 +14,7 @@ constexpr int lanes = CouplingPattern::lanes;
 // The factorisation of couplings leaves smoother errors than that of diagonal blocks.
 constexpr double edges_per_cell = 8, edges_per_cell_of_matrices = 4;
 constexpr int smallest_component = 64;          // vertices
-constexpr std::size_t smallest_part = 1 << 16;  // positions
+constexpr std::size_t smallest_part = 1 << 10;  // positions
 constexpr std::size_t most_parts = 4;
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
@@ -258,13 +258,10 @@ void CoarseSpace::add_matrix(const BlockMatrix& matrix, std::size_t part, Float4
   const BlockPattern& pattern = matrix.pattern();
   const auto [begin, end] = share(part, pattern.vertex_count());
   for (std::size_t row = begin; row < end; ++row) {
-    const BackgroundGrid::Point at_row = point(at(position_[matrix.first() + row]));
-    for (int k = pattern.first()[row]; k < pattern.first()[row + 1]; ++k) {
+    RowOfBlocks sums(grid_, grid_matrix_, point(at(position_[matrix.first() + row])), half);
+    for (int k = pattern.first()[row]; k < pattern.diagonal()[row]; ++k) {
       const auto column = at(pattern.columns()[at(k)]);
-      if (column >= row) break;
-      const Float4* const a = matrix.block(k);
-      add_block(grid_, grid_matrix_, at_row, point(at(position_[matrix.first() + column])),
-                {a[0], a[1], a[2]}, half);
+      sums.add(point(at(position_[matrix.first() + column])), matrix.block(k));
     }
   }
 }
@@ -348,7 +345,7 @@ double CoarseSpace::correct(const float* r, Floats t) {
     for (int c = 0; c < 3; ++c)
       product += static_cast<double>(x[n][c]) * static_cast<double>(right_side[n][c]);
   }
-  parallel_for(positions, 8192, [&](std::size_t begin, std::size_t end) {
+  parallel_for(positions, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const BackgroundGrid::Point p = point(i);
       Float4 value = {0, 0, 0, 0};

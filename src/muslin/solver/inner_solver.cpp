@@ -42,7 +42,6 @@ void InnerSolver::linearize(const IncrementalPotential& function, ConstVectors x
   stiffest_ = system_.factor(h_);
   projected_ = false;
   rest_positions_ = function.rest_positions();
-  assembled_ = false;
 }
 
 int InnerSolver::patience() const {

@@ -15,7 +15,10 @@ namespace muslin {
 class InnerSolver {
  public:
   /// Begins a step: what is done depends on nothing before it.
-  void begin_step() { iterations_a_decade_ = 0; }
+  void begin_step() {
+    iterations_a_decade_ = 0;
+    assembled_ = false;
+  }
   /// Linearises at x. x stays valid for as long as `solve` is called.
   void linearize(const IncrementalPotential& function, ConstVectors x);
 

@@ -15,18 +15,23 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 Float4 operator*(const Block3& b, const Float4& v) { return b.x * v[0] + b.y * v[1] + b.z * v[2]; }
 
-/// b − A x in a row, without the diagonal block.
-Float4 rest_of_row(const BlockPattern& pattern, const BlockMatrix& matrix, std::size_t row, const Float4& b,
-                   const Float4* x) {
-  Float4 sum = b, further = {0, 0, 0, 0};
-  for (int k = pattern.first()[row]; k < pattern.first()[row + 1]; ++k) {
-    const auto column = at(pattern.columns()[at(k)]);
-    if (column == row) continue;
-    const Float4* const a = matrix.block(k);
-    const Float4& v = x[column];
-    sum -= a[0] * v[0] + a[1] * v[1];
-    further -= a[2] * v[2];
-  }
+enum class Part { earlier, later, others };
+
+/// A x in a row, of the columns before the diagonal, behind it, or both.
+Float4 row_times(const BlockPattern& pattern, const BlockMatrix& matrix, std::size_t row, const Float4* x,
+                 Part part) {
+  Float4 sum = {0, 0, 0, 0}, further = {0, 0, 0, 0};
+  const int diagonal = pattern.diagonal()[row];
+  const auto add = [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      const Float4* const a = matrix.block(k);
+      const Float4& v = x[at(pattern.columns()[at(k)])];
+      sum += a[0] * v[0] + a[1] * v[1];
+      further += a[2] * v[2];
+    }
+  };
+  if (part != Part::later) add(pattern.first()[row], diagonal);
+  if (part != Part::earlier) add(diagonal + 1, pattern.first()[row + 1]);
   return sum + further;
 }
 
@@ -82,8 +87,7 @@ void Multilevel::prepare() {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     for (std::size_t i = 0; i < level.inverse.size(); ++i) {
-      const int row = static_cast<int>(i);
-      level.inverse[i] = inverse(level.matrix.block(level.pattern->find(row, row)));
+      level.inverse[i] = inverse(level.matrix.block(level.pattern->diagonal()[i]));
     }
     if (l + 1 < levels_.size()) make_coarser_matrix(l);
   }
@@ -115,17 +119,12 @@ void Multilevel::make_coarser_matrix(std::size_t l) {
   Level& level = levels_[l];
   std::fill(level.half.begin(), level.half.end(), Float4{0, 0, 0, 0});
   for (std::size_t row = 0; row < level.b.size(); ++row) {
-    for (int k = level.pattern->first()[row]; k < level.pattern->first()[row + 1]; ++k) {
-      const auto column = at(level.pattern->columns()[at(k)]);
-      const Float4* const a = level.matrix.block(k);
-      const Block3 block = {a[0], a[1], a[2]};
-      if (column < row) {
-        add_block(level.grid, level.coarser, level.grid.point(row), level.grid.point(column), block,
-                  level.half.data());
-      } else if (column == row) {
-        add_block(level.grid, level.coarser, level.grid.point(row), block, level.half.data());
-      }
-    }
+    const int diagonal = level.pattern->diagonal()[row];
+    const Float4* const a = level.matrix.block(diagonal);
+    add_block(level.grid, level.coarser, level.grid.point(row), {a[0], a[1], a[2]}, level.half.data());
+    RowOfBlocks sums(level.grid, level.coarser, level.grid.point(row), level.half.data());
+    for (int k = level.pattern->first()[row]; k < diagonal; ++k)
+      sums.add(level.grid.point(at(level.pattern->columns()[at(k)])), level.matrix.block(k));
   }
   levels_[l + 1].matrix.reset(level.coarser.pattern(), 0);
   level.coarser.finish(level.half.data(), levels_[l + 1].matrix);
@@ -148,26 +147,27 @@ void Multilevel::solve(std::size_t l) {
         x[i][static_cast<int>(c)] = static_cast<float>(v[static_cast<Eigen::Index>(3 * i + c)]);
     return;
   }
-  std::fill(level.x.begin(), level.x.end(), Float4{0, 0, 0, 0});
-  const auto smooth = [&] {
-    for (std::size_t i = 0; i < count; ++i)
-      x[i] = level.inverse[i] * rest_of_row(*level.pattern, level.matrix, i, b[i], x);
-    for (std::size_t i = count; i-- > 0;)
-      x[i] = level.inverse[i] * rest_of_row(*level.pattern, level.matrix, i, b[i], x);
-  };
-  smooth();
+  const BlockPattern& pattern = *level.pattern;
   if (last) {
-    for (int n = 1; n < sweeps_without; ++n) smooth();
+    std::fill(level.x.begin(), level.x.end(), Float4{0, 0, 0, 0});
+    for (int n = 0; n < sweeps_without; ++n) {
+      for (std::size_t i = 0; i < count; ++i)
+        x[i] = level.inverse[i] * (b[i] - row_times(pattern, level.matrix, i, x, Part::others));
+      for (std::size_t i = count; i-- > 0;)
+        x[i] = level.inverse[i] * (b[i] - row_times(pattern, level.matrix, i, x, Part::others));
+    }
     return;
   }
+  // Forwards from zero: what comes later does not count yet, and is all that is left over.
+  for (std::size_t i = 0; i < count; ++i)
+    x[i] = level.inverse[i] * (b[i] - row_times(pattern, level.matrix, i, x, Part::earlier));
   Level& coarser = levels_[l + 1];
   std::fill(coarser.b.begin(), coarser.b.end(), Float4{0, 0, 0, 0});
   for (std::size_t i = 0; i < count; ++i) {
-    const Float4* const a = level.matrix.block(level.pattern->find(static_cast<int>(i), static_cast<int>(i)));
-    const Float4 r = rest_of_row(*level.pattern, level.matrix, i, b[i], x) - Block3{a[0], a[1], a[2]} * x[i];
+    const Float4 r = row_times(pattern, level.matrix, i, x, Part::later);
     float w[8];
     const BackgroundGrid::Cell& cell = level.grid.weights(level.grid.point(i), w);
-    for (int k = 0; k < cell.count; ++k) coarser.b[at(cell.nodes[at(k)])] += w[k] * r;
+    for (int k = 0; k < cell.count; ++k) coarser.b[at(cell.nodes[at(k)])] -= w[k] * r;
   }
   solve(l + 1);
   for (std::size_t i = 0; i < count; ++i) {
@@ -175,7 +175,8 @@ void Multilevel::solve(std::size_t l) {
     const BackgroundGrid::Cell& cell = level.grid.weights(level.grid.point(i), w);
     for (int k = 0; k < cell.count; ++k) x[i] += w[k] * coarser.x[at(cell.nodes[at(k)])];
   }
-  smooth();
+  for (std::size_t i = count; i-- > 0;)
+    x[i] = level.inverse[i] * (b[i] - row_times(pattern, level.matrix, i, x, Part::others));
 }
 
 std::size_t Multilevel::bytes() const {

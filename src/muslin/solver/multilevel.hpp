@@ -1,8 +1,8 @@
 // Multigrid on block matrices: an approximate inverse, symmetric and positive definite, whose quality does
 // not depend on how many unknowns there are.
 //
-// One V-cycle: a symmetric Gauss-Seidel sweep, the remaining residual summed to the nodes of a grid of twice
-// the spacing and solved for there in the same way, its correction interpolated back, another sweep. The
+// One V-cycle: a Gauss-Seidel sweep forwards, the remaining residual summed to the nodes of a grid of twice
+// the spacing and solved for there in the same way, its correction interpolated back, a sweep backwards. The
 // coarser matrices are Pᵀ A P (Galerkin), P trilinear interpolation; the coarsest one is factorised
 // (Briggs, Henson, McCormick, A Multigrid Tutorial, 2000).
 #pragma once

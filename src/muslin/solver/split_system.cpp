@@ -15,7 +15,7 @@ using sweep_kernels::matrix_size;
 using sweep_kernels::packed_size;
 using sweep_kernels::vector_size;
 
-constexpr std::size_t grain = 512;  // groups
+constexpr std::size_t grain = 64;  // groups
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
