@@ -18,15 +18,14 @@ class Dashpots : public Potential {
 
   double value(ConstVectors x) const override {
     const std::vector<Vec3> d = moved(x);
-    const std::vector<Vec3> force = product(d);
-    double sum = 0;
-    for (std::size_t v = 0; v < d.size(); ++v) sum += d[v].dot(force[v]);
-    return 0.5 * factor_ * sum;
+    return energy(d, product(d));
   }
-  void add_gradient(ConstVectors x, Vectors g) const override {
-    const std::vector<Vec3> force = product(moved(x));
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override {
+    const std::vector<Vec3> d = moved(x), force = product(d);
     for (std::size_t v = 0; v < g.size(); ++v) g[v] += factor_ * force[v];
+    return energy(d, force);
   }
+  void add_gradient(ConstVectors x, Vectors g) const override { add_gradient_and_value(x, g); }
   void add_hessian_product(ConstVectors, ConstVectors p, Vectors y) const override {
     const std::vector<Vec3> force = product(p);
     for (std::size_t v = 0; v < y.size(); ++v) y[v] += factor_ * force[v];
@@ -51,6 +50,11 @@ class Dashpots : public Potential {
     std::vector<Vec3> d(x.size());
     for (std::size_t v = 0; v < d.size(); ++v) d[v] = x[v] - anchor_[v];
     return d;
+  }
+  double energy(ConstVectors d, ConstVectors force) const {
+    double sum = 0;
+    for (std::size_t v = 0; v < d.size(); ++v) sum += d[v].dot(force[v]);
+    return 0.5 * factor_ * sum;
   }
   std::vector<Vec3> product(ConstVectors p) const {
     std::vector<Vec3> y(p.size(), Vec3::Zero());
