@@ -16,10 +16,10 @@ constexpr double armijo = 1e-4;
 constexpr double rounding = 1e-12;  // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-6;
 constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-3, fast_forcing = 0.05;
-/// A fast step ends early where its last motion was below the first share of the guard's resolution, and
-/// makes more iterations, but no more than so many, where it was above the second.
-constexpr double calm_share = 0.02, restless_share = 0.1;
-constexpr int restless_iterations = 1;
+/// A fast step ends early where its last motion was below the first share of the guard's resolution, makes
+/// one iteration more where it was above the second, and as many as so many more while it is above the third.
+constexpr double calm_share = 0.02, restless_share = 0.1, wild_share = 0.15;
+constexpr int restless_iterations = 4;
 /// Iterations that Anderson's acceleration looks back over in a converged step, and those it leaves alone.
 constexpr std::size_t mixed_iterations = 5;
 constexpr int unmixed_iterations = 3;
@@ -183,7 +183,9 @@ class GuardedStep {
   /// Whether a fast step may end after so many iterations.
   bool is_calm(int iterations) const {
     if (iterations == 0 || (iterations < settings_.fast_iterations && held_back_ > 0)) return false;
-    const double share = iterations < settings_.fast_iterations ? calm_share : restless_share;
+    const double share = iterations < settings_.fast_iterations    ? calm_share
+                         : iterations == settings_.fast_iterations ? restless_share
+                                                                   : wild_share;
     return moved_ <= share * guard_.resolution();
   }
 
