@@ -51,8 +51,10 @@ int InnerSolver::patience() const {
 /// False where there is none.
 bool InnerSolver::prepare_coarse_space() {
   if (rest_positions_.size() != h_.size()) return false;
-  if (!coarse_space_ || !coarse_space_->fits(h_, rest_positions_))
+  if (!coarse_space_ || !coarse_space_->fits(h_, rest_positions_)) {
     coarse_space_ = std::make_unique<CoarseSpace>(h_, rest_positions_);
+    assembled_ = false;
+  }
   if (coarse_space_->empty()) return false;
   if (!assembled_) coarse_space_->assemble(h_);
   assembled_ = true;

@@ -49,7 +49,7 @@ class InnerSolver {
   std::unique_ptr<CoarseSpace> coarse_space_;  // kept from step to step
   double stiffest_ = 0;
   bool projected_ = false;
-  bool assembled_ = false;
+  bool assembled_ = false;          // the coarse matrix, in this step
   double iterations_a_decade_ = 0;  // that the residual fell by, without the coarse space, in this step
 };
 
