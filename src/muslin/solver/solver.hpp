@@ -35,7 +35,7 @@ struct SolverSettings {
   /// tolerance [m/s²].
   double tolerance = 1e-2;
   int max_iterations = 100;  ///< Newton iterations of a converged step
-  /// Newton iterations of a fast step: fewer where hardly anything moves any more, one more where
+  /// Newton iterations of a fast step: fewer where hardly anything moves any more, up to four more where
   /// much still does.
   int fast_iterations = 2;
   double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
