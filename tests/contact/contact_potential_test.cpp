@@ -179,26 +179,98 @@ TEST(ContactPotential, LinearizesToItsHessian) {
     EXPECT_LT((product[v] - expected[v]).norm(), 1e-4 * (1 + test::norm(expected)));
 }
 
-TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
-  // A fixed sheet; a lone point pressed on it feels the same force over faces, edges and corners.
-  const test::ClothGrid sheet(5, 5, 0.1);
-  std::vector<Vec3i> triangles = sheet.triangles;
-  triangles.emplace_back(25, 25, 25);
-  std::vector<int> bodies(25, 0);
-  bodies.push_back(1);
-  // The softer body decides.
-  const auto surface = std::make_shared<ContactSurface>(
-      triangles, bodies, std::vector<ContactBody>{{0, false, false, INFINITY}, {0, false, false, 1000}});
-  const auto map = std::make_shared<SurfaceMap>(SurfaceMap::identity(26));
-  for (const Vec3& over :
-       {Vec3(0.23, 0.001, 0.22), Vec3(0.2, 0.001, 0.25), Vec3(0.2, 0.001, 0.2), Vec3(0.25, 0.001, 0.25)}) {
-    std::vector<Vec3> q = sheet.positions;
-    q.push_back(over);
-    ContactCandidates candidates(surface, q, 0.002);
-    candidates.update(q, q, 0.001);
-    const ContactPotential w(test::distances_at(candidates, q), map, q, {0, 1e-5}, q);
-    EXPECT_NEAR(test::gradient(w, q)[25].y(), -1, 1e-9) << over.transpose();
+/// A lone point over a fixed sheet, whose surface is softer and decides: 1000 N/m.
+struct PointOverSheet {
+  test::ClothGrid sheet{5, 5, 0.1};
+  double range = 0.002;
+  std::shared_ptr<const ContactSurface> surface;
+  std::shared_ptr<const SurfaceMap> map = std::make_shared<SurfaceMap>(SurfaceMap::identity(26));
+
+  PointOverSheet() {
+    std::vector<Vec3i> triangles = sheet.triangles;
+    triangles.emplace_back(25, 25, 25);
+    std::vector<int> bodies(25, 0);
+    bodies.push_back(1);
+    surface = std::make_shared<ContactSurface>(
+        triangles, bodies, std::vector<ContactBody>{{0, false, false, INFINITY}, {0, false, false, 1000}});
   }
+  /// On the point [N].
+  Vec3 force(const Vec3& at) const {
+    std::vector<Vec3> q = sheet.positions;
+    q.push_back(at);
+    ContactCandidates candidates(surface, q, range);
+    candidates.update(q, q, range / 2);
+    const ContactPotential w(test::distances_at(candidates, q), map, q, {0, 1e-5}, q);
+    return -test::gradient(w, q)[25];
+  }
+  /// Of the sheet at x, z.
+  double height(double x, double z) const {
+    for (const Vec3i& t : sheet.triangles) {
+      const auto corner = [&](int k) { return sheet.positions[static_cast<std::size_t>(t[k])]; };
+      const Vec3 u = corner(1) - corner(0), v = corner(2) - corner(0), p = Vec3(x, 0, z) - corner(0);
+      const double area = u.x() * v.z() - u.z() * v.x();
+      const double s = (p.x() * v.z() - p.z() * v.x()) / area, r = (u.x() * p.z() - u.z() * p.x()) / area;
+      if (s >= -1e-12 && r >= -1e-12 && s + r <= 1 + 1e-12) return corner(0).y() + s * u.y() + r * v.y();
+    }
+    return INFINITY;
+  }
+};
+
+TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
+  // The same force over faces, edges and corners.
+  const PointOverSheet scene;
+  for (const Vec3& over :
+       {Vec3(0.23, 0.001, 0.22), Vec3(0.2, 0.001, 0.25), Vec3(0.2, 0.001, 0.2), Vec3(0.25, 0.001, 0.25)})
+    EXPECT_NEAR(scene.force(over).y(), 1, 1e-9) << over.transpose();
+}
+
+TEST(ContactPotential, CountsItAboutOnceBesideEdgesAndCorners) {
+  const PointOverSheet scene;
+  double least = 1, most = 1;
+  for (int i = 0; i <= 60; ++i) {
+    for (int k = 0; k <= 60; ++k) {
+      const double force = scene.force({0.1 + 1e-4 * i, 0.001, 0.1 + 1e-4 * k}).y();
+      least = std::min(least, force);
+      most = std::max(most, force);
+    }
+  }
+  EXPECT_GT(least, 0.8);
+  EXPECT_LT(most, 1.3);
+}
+
+TEST(ContactPotential, HasForcesThatDoNotJump) {
+  // Where they do there may be no balance, and Newton's method goes to and fro. Over ridges, valleys and
+  // corners of a crumpled sheet, each stretch of the way is halved where the force changes more.
+  PointOverSheet scene;
+  const std::vector<Vec3> noise = test::random_vectors(25, 1, 5);
+  for (std::size_t v = 0; v < 25; ++v)
+    scene.sheet.positions[v] += Vec3(0.02, 0.04, 0.02).cwiseProduct(noise[v]);
+  double largest = 0;
+  for (const auto& [from, to] : {std::pair{Vec3(0.12, 0, 0.11), Vec3(0.31, 0, 0.24)},
+                                 std::pair{scene.sheet.positions[12], Vec3(scene.sheet.positions[13])},
+                                 std::pair{scene.sheet.positions[6], Vec3(scene.sheet.positions[12])}}) {
+    const auto force = [&, from = from, to = to](double t) {
+      Vec3 at = from + t * (to - from);
+      at.y() = scene.height(at.x(), at.z()) + 0.6 * scene.range;
+      return scene.force(at);
+    };
+    constexpr int stretches = 300;
+    for (int i = 0; i < stretches; ++i) {
+      double a = static_cast<double>(i) / stretches, b = static_cast<double>(i + 1) / stretches;
+      Vec3 at_a = force(a), at_b = force(b);
+      while (b - a > 1e-7) {
+        const double middle = (a + b) / 2;
+        const Vec3 at_middle = force(middle);
+        if ((at_middle - at_a).norm() > (at_b - at_middle).norm()) {
+          b = middle, at_b = at_middle;
+        } else {
+          a = middle, at_a = at_middle;
+        }
+      }
+      largest = std::max(largest, (at_b - at_a).norm());
+    }
+  }
+  EXPECT_LT(largest, 1e-3);
 }
 
 TEST(ContactPotential, MaxStepKeepsEnergyFinite) {

@@ -22,48 +22,73 @@ constexpr double ranges_ahead = PairDistances::ranges_known;
 /// Edges fade out towards their ends over this share of the range, where the vertex there is in range as
 /// well, but of no more than this share of their length; and below this squared sine of their angle.
 constexpr double end_ranges = 0.5, end_share = 0.05, parallel_share = 1e-3;
+/// What a triangle leaves to its neighbours ends where its corner opposite to them has this weight, so that
+/// no more than two of its three edges are near.
+constexpr double border_share = 0.3;
 
-/// Less weight of a corner than this is rounding: the closest point lies on the edge opposite to it.
-constexpr double least_weight = 1e-6;
+/// From 0 at 0 to 1 at 1 and beyond, smoothly.
+double risen(double y) { return y >= 1 ? 1 : y <= 0 ? 0 : y * y * (3 - 2 * y); }
 
-double faded(double t, double width) {
-  const double y = std::min(t, 1 - t) / width;
-  return y >= 1 ? 1 : y <= 0 ? 0 : y * y * (3 - 2 * y);
+/// Of a vertex and a triangle: on an edge 1/n of its n triangles, at a corner the same of those there, and 1
+/// away from them. Beside an edge the neighbours have their parts already, for their closest points lie on
+/// it: what they push in the plane of this triangle is not counted again.
+double triangle_share(const ContactSurface& surface, const ContactPair& pair, const PairGeometry& at,
+                      ConstVectors x) {
+  std::array<Vec3, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = x[static_cast<std::size_t>(pair.points[k + 1])];
+  const double area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+  const Vec3i& edges = surface.triangle_edges()[static_cast<std::size_t>(pair.second)];
+  const double depth = pair.range + pair.thickness - at.distance;
+  // Edge k goes from corner k to the next. near[k] is the push of a neighbour there over this triangle's.
+  std::array<double, 3> near{}, on_edge{1, 1, 1};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int edge = edges[static_cast<Eigen::Index>(k)];
+    const double weight = -at.weights[(k + 2) % 3 + 1];
+    if (edge < 0 || weight >= border_share) continue;
+    const double away = weight * area / std::max((corners[(k + 1) % 3] - corners[k]).norm(), 1e-300);
+    const double farther = away * away / (at.distance + std::hypot(at.distance, away));
+    near[k] = depth > farther ? (1 - farther / depth) * (1 - risen(2 * weight / border_share - 1)) : 0;
+    if (weight <= 0) near[k] = 1;
+    on_edge[k] = 1.0 / surface.triangles_at_edge(edge);
+  }
+  double share = (1 - near[0]) * (1 - near[1]) * (1 - near[2]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+    share += near[k] * (1 - near[next]) * (1 - near[last]) * on_edge[k];
+    share += near[k] * near[last] * (1 - near[next]) / surface.triangles_at_point(pair.points[k + 1]);
+  }
+  return share;
 }
 
-/// The share of a pair in the contact at its closest points.
+/// Of two edges.
+double edge_share(const ContactPair& pair, const PairGeometry& at, ConstVectors x) {
+  const auto along = [&](std::size_t i) {
+    return Vec3(x[static_cast<std::size_t>(pair.points[i + 1])] -
+                x[static_cast<std::size_t>(pair.points[i])]);
+  };
+  const Vec3 u = along(0), v = along(2);
+  const double sine = u.cross(v).squaredNorm() / std::max(u.squaredNorm() * v.squaredNorm(), 1e-300);
+  const double apart = std::min(1.0, sine / parallel_share);
+  const auto inside = [&](double t, double squared_length) {
+    const double width =
+        std::min(end_share, end_ranges * pair.range / std::sqrt(std::max(squared_length, 1e-300)));
+    return risen(std::min(t, 1 - t) / width);
+  };
+  return inside(at.weights[1], u.squaredNorm()) * inside(-at.weights[3], v.squaredNorm()) * apart *
+         (2 - apart);
+}
+
+/// The share of a pair in the contact at its closest points: continuous, because where a force jumps there
+/// may be no balance to find.
 double contact_share(const ContactSurface& surface, const ContactPair& pair, const PairGeometry& at,
                      ConstVectors x) {
-  if (pair.kind == PairKind::point_plane) return 1;
-  const auto position = [&](std::size_t i) -> const Vec3& {
-    return x[static_cast<std::size_t>(pair.points[i])];
-  };
-  if (pair.kind == PairKind::edge_edge) {
-    const Vec3 u = position(1) - position(0), v = position(3) - position(2);
-    const double sine = u.cross(v).squaredNorm() / std::max(u.squaredNorm() * v.squaredNorm(), 1e-300);
-    const double apart = std::min(1.0, sine / parallel_share);
-    const auto width = [&](double squared_length) {
-      return std::min(end_share, end_ranges * pair.range / std::sqrt(std::max(squared_length, 1e-300)));
-    };
-    return faded(at.weights[1], width(u.squaredNorm())) * faded(-at.weights[3], width(v.squaredNorm())) *
-           apart * (2 - apart);
-  }
-  std::array<int, 3> corners{};
-  std::size_t count = 0;
-  for (std::size_t i = 1; i < 4; ++i) {
-    const bool again =
-        std::find(corners.begin(), corners.begin() + count, pair.points[i]) != corners.begin() + count;
-    if (at.weights[i] < -least_weight && !again) corners[count++] = pair.points[i];
-  }
-  if (count == 3) return 1;
-  if (count == 1) return 1.0 / surface.triangles_at_point(corners[0]);
-  const Vec3i& edges = surface.triangle_edges()[static_cast<std::size_t>(pair.second)];
-  for (const int e : edges) {
-    if (e < 0) continue;
-    const ContactSurface::Edge& ends = surface.edges()[static_cast<std::size_t>(e)];
-    const bool has =
-        (ends[0] == corners[0] && ends[1] == corners[1]) || (ends[0] == corners[1] && ends[1] == corners[0]);
-    if (has) return 1.0 / surface.triangles_at_edge(e);
+  switch (pair.kind) {
+    case PairKind::point_plane:
+      break;
+    case PairKind::vertex_triangle:
+      return triangle_share(surface, pair, at, x);
+    case PairKind::edge_edge:
+      return edge_share(pair, at, x);
   }
   return 1;
 }
