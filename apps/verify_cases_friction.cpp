@@ -113,6 +113,54 @@ std::vector<Comparison> holds_on_a_slope() {
   return numbers;
 }
 
+/// The slope as two hundred triangles, whose edges what lies on it does not see.
+const std::string ramp = R"(
+[[collider]]
+name = "ramp"
+shape = "mesh"
+mesh = "ramp.obj"
+translate = [-0.513, 0.001, -0.527]
+)";
+
+/// Between the block and the slope: cloth.
+const std::string block_on_cloth = R"(
+[[body]]
+name = "cloth"
+mesh = "patch.obj"
+model = "shell"
+material = "denim"
+translate = [-0.1, 0.0015, -0.1]
+[[collider]]
+name = "body"
+shape = "box"
+size = [0.1, 0.06, 0.1]
+center = [0, 0.035, 0]
+density = 1000
+)";
+
+/// Few iterations a step, in which nothing is in balance.
+std::vector<Comparison> holds_in_fast_steps() {
+  const std::vector<std::string> fast = {"contact.mode=\"fast\"", "time.steps_per_frame=24"};
+  std::vector<Comparison> numbers;
+  for (const auto& [name, body] :
+       {std::pair{"a rigid block", block}, std::pair{"a soft block", lattice_block},
+        std::pair{"cloth", patch}, std::pair{"cloth on triangles", ramp + patch},
+        std::pair{"a block on cloth", block_on_cloth}}) {
+    const Experiment experiment;
+    experiment.level_sheet("ramp.obj", 1, 1, 10);
+    Simulation simulation = start_on_slope(experiment, body, angle, 0.40, 10, fast);
+    advance(simulation, 10);  // it settles
+    const Vec3 settled = centre(simulation, "body");
+    double farthest = 0;
+    for (int second = 0; second < 60; ++second) {
+      advance(simulation, 10);
+      farthest = std::max(farthest, (centre(simulation, "body") - settled).norm());
+    }
+    numbers.push_back({fmt::format("creep of {} in 60 s [m], mu = 1.1 tan", name), 0, farthest, 1e-6, false});
+  }
+  return numbers;
+}
+
 std::vector<Comparison> slides_down_a_slope() {
   std::vector<Comparison> numbers;
   const double radians = angle * std::numbers::pi / 180, friction = 0.2;
@@ -295,6 +343,7 @@ std::vector<VerifyCase> friction_cases() {
   return {
       {"slope-holds", "bodies on a slope stay where they are for mu > tan, for a minute", "Coulomb's law",
        false, holds_on_a_slope},
+      {"slope-holds-fast", "so they do in fast steps", "Coulomb's law", false, holds_in_fast_steps},
       {"slope-slides", "and slide with g (sin - mu cos) otherwise", "closed form", false,
        slides_down_a_slope},
       {"friction-pairs", "friction of two bodies is the geometric mean of theirs", "closed form", false,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,10 @@ constexpr double armijo = 1e-4;
 constexpr double rounding = 1e-12;  // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-6;
 constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-3, fast_forcing = 0.05;
-/// A fast step ends early where its last motion was below the first share of the guard's resolution, makes
-/// one iteration more where it was above the second, and as many as so many more while it is above the third.
+/// A fast step ends early where its last motion was below the first share of the guard's resolution and left
+/// no more than so much of the gradient, makes one iteration more where the motion was above the second, and
+/// as many as so many more while it is above the third.
+constexpr double calm_shrink = 0.3;
 constexpr double calm_share = 0.02, restless_share = 0.1, wild_share = 0.15;
 constexpr int restless_iterations = 4;
 /// Iterations that Anderson's acceleration looks back over in a converged step, and those it leaves alone.
@@ -59,6 +62,7 @@ class GuardedStep {
         take_back_mixing();
         imbalance = function_.imbalance(workspace_.g);
       }
+      shrink_ = imbalance.norm / norm_;
       norm_ = imbalance.norm;
       report.residual = imbalance.largest;
       report.worst_vertex = imbalance.vertex;
@@ -180,9 +184,12 @@ class GuardedStep {
     find_gradient();
   }
 
-  /// Whether a fast step may end after so many iterations.
+  /// Whether a fast step may end after so many iterations. Short ways may be long for contact: a vertex that
+  /// rests lies as deep in it as its weight needs, which may be less than 1 µm, and the iteration that finds
+  /// it just above knows nothing of contact. It would flutter for ever, and what flutters creeps.
   bool is_calm(int iterations) const {
-    if (iterations == 0 || (iterations < settings_.fast_iterations && held_back_ > 0)) return false;
+    if (iterations == 0) return false;
+    if (iterations < settings_.fast_iterations && (held_back_ > 0 || !(shrink_ <= calm_shrink))) return false;
     const double share = iterations < settings_.fast_iterations    ? calm_share
                          : iterations == settings_.fast_iterations ? restless_share
                                                                    : wild_share;
@@ -247,8 +254,9 @@ class GuardedStep {
   double moved_ = 0;            ///< by the vertex that the last iteration moved farthest [m]
   std::vector<Vec3> base_, d_;  ///< the gradient without contact; the limited step
   AndersonMixing mixing_{mixed_iterations};
-  bool mixed_ = false;  ///< whether x is where mixing led
-  double norm_ = 0;     ///< of the last gradient
+  bool mixed_ = false;                                     ///< whether x is where mixing led
+  double norm_ = std::numeric_limits<double>::infinity();  ///< of the last gradient
+  double shrink_ = 0;                                      ///< its norm over that of the one before
   std::vector<Vec3> last_move_, mixed_step_;
 };
 
