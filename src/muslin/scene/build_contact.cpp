@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -81,6 +82,8 @@ class ContactBuilder {
       contact.radius = body.sheet ? body.thickness / 2 : 0;
       contact.stiffness = lattice_stiffness(body, settings);
     }
+    // What does not resist stretch at all still has weight to be held up.
+    if (!(contact.stiffness > 0)) contact.stiffness = stiffness_of_mass(body);
     note_size(body, edge);
     add_mesh(body, cut, contact);
     if (body.has_lattice() && edge > 2 * body.lattice.width) {
@@ -89,6 +92,15 @@ class ContactBuilder {
                       "subdivide the mesh",
                       body.name, edge));
     }
+  }
+
+  /// What stops the mean mass of a vertex within a step [N/m].
+  double stiffness_of_mass(const Body& body) const {
+    const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
+    const double mass = std::accumulate(model_.masses.begin() + first,
+                                        model_.masses.begin() + first + body.vertex_count, 0.0) /
+                        body.vertex_count;
+    return 4 * mass / (scene_.time.step() * scene_.time.step());
   }
 
   void add_collider(const Body& body, const ColliderSettings& settings) {
