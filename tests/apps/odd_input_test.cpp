@@ -140,11 +140,15 @@ TEST(OddInput, AbsurdNumbersEndInAResultOrAnError) {
       {{"body.flag.name=\"../x\""}, 3, "cannot be a name"},
       {{"body.flag.name=\"ü ñ 旗\""}, 0, ""},
       {{"body.flag.velocity=[1e9,0,0]"}, 0, ""},
-      {{"body.flag.velocity=[1e200,0,0]"}, 4, "in frame 1"},
+      {{"body.flag.velocity=[1e200,0,0]"}, 3, "give numbers from -100000000000 to 100000000000 [m/s]"},
       {{"body.flag.translate=[1e9,0,0]"}, 3, "beyond 1e9 m"},
       {{"body.flag.thickness=1e-12"}, 0, ""},
+      {{"body.flag.thickness=1e200"}, 3, "`thickness`"},
       {{"force.0.acceleration=[0,1e9,0]"}, 0, ""},
-      {{"force.0.acceleration=[0,1e150,0]", "solver.integrator=linearly_implicit_euler"}, 4, "farther"},
+      {{"force.0.acceleration=[0,1e11,0]", "time.frame_rate=0.01", "time.steps_per_frame=1",
+        "body.flag.material={density=40,edge_modulus=1e-3}", "solver.integrator=linearly_implicit_euler"},
+       4,
+       "farther"},
       {{"force.0={type=\"wind\",velocity=[1e6,0,0]}"}, 0, ""},
       {{"body.flag.material={base=\"thesis_flag\",density=1e-30}"}, 0, ""},
       {{"body.flag.material={base=\"thesis_flag\",edge_modulus=1e30}"}, 3, "edge_modulus"},
@@ -162,6 +166,52 @@ TEST(OddInput, AbsurdNumbersEndInAResultOrAnError) {
     EXPECT_EQ(outcome.code, each.code) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(each.message));
     if (outcome.code == 0 || outcome.code == 4) expect_finite_run(scratch / "run");
+  }
+}
+
+TEST(OddInput, AbsurdClothAndCollidersEndInAResultOrAnError) {
+  Scratch scratch;
+  test::write_bytes(scratch / "sheet.obj",
+                    "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0.5 0 0.5\n"
+                    "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+  test::write_bytes(
+      scratch / "odd.toml",
+      "[[body]]\nname = \"cloth\"\nmesh = \"sheet.obj\"\nmodel = \"shell\"\n"
+      "material = { areal_density = 0.2, membrane_warp = 500, bending_warp = 1e-4 }\n"
+      "[[collider]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.5, -0.21, 0.5]\nradius = 0.2\n"
+      "keyframes = [{ time = 0 }, { time = 0.04, translate = [0, 0.05, 0] }]\n"
+      "[[collider]]\nname = \"box\"\nshape = \"box\"\nsize = [0.1, 0.1, 0.1]\ncenter = [0.5, 1, 0.5]\n"
+      "density = 500\n[[force]]\ntype = \"gravity\"\n");
+  struct Case {
+    const char* setting;
+    int code;
+    const char* message;
+  };
+  const std::vector<Case> cases = {
+      {"body.cloth.thickness=1e200", 3, "`thickness` of [[body]] cloth is 1e+200"},
+      {"body.cloth.thickness=1e9", 3, "is closer than the thickness to"},
+      {"body.cloth.thickness=0", 0, ""},
+      {"body.cloth.warp=[1e9,0,0]", 0, ""},
+      {"body.cloth.warp=[1e300,0,0]", 3, "`warp`"},
+      {"body.cloth.velocity=[1e300,0,0]", 3, "`velocity`"},
+      {"body.cloth.material.membrane_warp=0", 0, "does not resist shear"},
+      {"body.cloth.material.membrane_weft=0", 0, ""},
+      {"collider.ball.keyframes.1.translate=[0,1e300,0]", 3, "y of `translate` of a keyframe"},
+      {"collider.ball.keyframes.1.translate=[0,1e9,0]", 0, ""},
+      {"collider.box.velocity=[1e300,0,0]", 3, "`velocity`"},
+      {"collider.box.velocity=[0,1e9,0]", 0, ""},
+      {"collider.box.angular_velocity=[1e300,0,0]", 3, "`angular_velocity`"},
+      {"collider.box.angular_velocity=[1e11,0,0]", 0, ""},
+  };
+  for (const Case& each : cases) {
+    SCOPED_TRACE(each.setting);
+    fs::remove_all(scratch / "run");
+    const Outcome outcome = run(scratch, {"run", scratch / "odd.toml", "-o", scratch / "run", "--frames", "2",
+                                          "--quiet", "--set", each.setting});
+    EXPECT_EQ(outcome.code, each.code) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(each.message));
+    if (outcome.code != 0) continue;
+    EXPECT_THAT(bytes_of(scratch / "run" / "diagnostics.csv"), testing::Not(HasSubstr("nan")));
   }
 }
 

@@ -378,9 +378,11 @@ TEST_F(ColliderModel, WrongCollidersAreErrorsThatSayWhatToDo) {
       {"shape = 'sphere'\nradius = 1\nsequence = 'a.pc2'\n", "unknown key `sequence`"},
       {"shape = 'sphere'\nradius = 1\nname = 'cloth'\n", "a [[body]] and a [[collider]] called `cloth`"},
       {"shape = 'sphere'\nradius = 1e12\n", "`radius`"},
-      {"shape = 'sphere'\nradius = 1\ncenter = [1e12, 0, 0]\n", "collider sphere0"},
-      {"shape = 'sphere'\nradius = 1\nkeyframes = [{ time = 0, translate = [0, 1e300, 0] }]\n",
+      {"shape = 'sphere'\nradius = 1\ncenter = [1e10, 0, 0]\n", "collider sphere0"},
+      {"shape = 'sphere'\nradius = 1\nkeyframes = [{ time = 0, translate = [0, 1e10, 0] }]\n",
        "collider sphere0"},
+      {"shape = 'capsule'\nradius = 1\npoints = [[0, 0, 0], [1e200, 0, 0]]\n",
+       "x of a point of `points` is 1e+200; give numbers from -100000000000"},
       {"shape = 'mesh'\nmesh = 'box.obj'\nscale = 1e-9\ndensity = 1\n", "too small to have mass"},
       {"shape = 'sphere'\nname = 'post'\nradius = 1\n[[pin]]\nbody = 'post'\nwhere = { nearest = [0, 0, 0] "
        "}\n",

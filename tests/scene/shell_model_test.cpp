@@ -168,7 +168,7 @@ TEST_F(ShellModel, SaysWhatIsWrongAndWhere) {
               HasSubstr("`poisson`"));
   EXPECT_THAT(with("{ base = 'steel' }"), HasSubstr("`steel` has no numbers for a shell"));
   EXPECT_EQ(with("{ base = 'denim', bending_warp = 1e-4 }"), "no error");
-  EXPECT_THAT(message(body("sheet.obj", "warp = [0, 0, 0]\n")), HasSubstr("`warp` is no direction"));
+  EXPECT_THAT(message(body("sheet.obj", "warp = [0, 0, 0]\n")), HasSubstr("`warp` has no direction"));
 }
 
 }  // namespace

@@ -67,7 +67,9 @@ double to_number(const TomlValue& value, const std::string& name, std::string_vi
 }
 
 Vec3 to_vector(const TomlValue& value, const std::string& name, std::string_view unit, const Range& range) {
-  const std::string remedy = "give a list of three numbers [x, y, z]" + range_text(range, unit);
+  const bool any = range.min == -largest_component && range.max == largest_component;
+  const std::string remedy =
+      "give a list of three numbers [x, y, z]" + range_text(any ? Range::any() : range, unit);
   if (value.type != TomlValue::Type::array || value.items.size() != 3) {
     throw wrong_type(value, name, remedy);
   }
@@ -75,7 +77,10 @@ Vec3 to_vector(const TomlValue& value, const std::string& name, std::string_view
   for (int i = 0; i < 3; ++i) {
     const TomlValue& item = value.items[static_cast<std::size_t>(i)];
     const auto x = number_in(item);
-    if (!x || !fits(*x, range)) throw wrong_type(item, fmt::format("{} of {}", "xyz"[i], name), remedy);
+    if (!x || !fits(*x, range)) {
+      throw wrong_type(item, fmt::format("{} of {}", "xyz"[i], name),
+                       x && std::isfinite(*x) ? "give numbers" + range_text(range, unit) : remedy);
+    }
     result[i] = *x;
   }
   return result;

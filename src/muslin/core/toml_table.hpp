@@ -28,8 +28,10 @@ struct Range {
 /// Numbers of single values; `name` is how messages call them and `unit` may be empty. Errors: input.
 double to_number(const TomlValue& value, const std::string& name, std::string_view unit,
                  const Range& range = {});
+/// Of points, velocities, directions: what is larger cannot be squared and summed without harm.
+inline constexpr double largest_component = 1e11;
 Vec3 to_vector(const TomlValue& value, const std::string& name, std::string_view unit,
-               const Range& range = {});
+               const Range& range = Range::between(-largest_component, largest_component));
 
 class TomlTable {
  public:

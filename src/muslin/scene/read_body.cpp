@@ -6,6 +6,7 @@
 
 #include "muslin/core/nearest_name.hpp"
 #include "muslin/core/toml_table.hpp"
+#include "muslin/geometry/inspect.hpp"
 #include "muslin/material/lattice_moduli.hpp"
 #include "muslin/material/material_table.hpp"
 #include "muslin/scene/names.hpp"
@@ -141,21 +142,17 @@ BodyModel read_model(const TomlTable& body) {
 }
 
 void read_shell_settings(const TomlTable& table, BodySettings& body) {
-  if (table.has("thickness")) body.shell_thickness = table.number("thickness", "m", Range::non_negative());
+  if (table.has("thickness"))
+    body.shell_thickness = table.number("thickness", "m", {0, largest_coordinate, false});
   if (table.has("rest_mesh")) {
     body.rest_mesh = read_path(table, "rest_mesh");
     body.rest_mesh_place = table.place("rest_mesh");
   }
-  if (!table.has("warp")) return;
-  body.warp = table.vector("warp", "direction");
-  if (!(body.warp->norm() > 0)) {
-    throw table.error("warp", "`warp` is no direction",
-                      "give a vector along the warp threads, such as [1, 0, 0]");
-  }
+  if (table.has("warp")) body.warp = read_direction(table, "warp", "[1, 0, 0]");
 }
 
 void read_lattice_settings(const TomlTable& table, BodySettings& body, std::vector<std::string>& warnings) {
-  if (table.has("thickness")) body.thickness = table.number("thickness", "m", Range::positive());
+  if (table.has("thickness")) body.thickness = table.number("thickness", "m", {0, largest_coordinate, true});
   body.lattice.width = table.number("voxel_width", "m", {1e-6, 1e6, false});
   body.lattice.rule = static_cast<VoxelRule>(table.choice("voxels", voxel_rule_names(), 0));
   body.lattice.threshold = table.number("threshold", "voxel widths", {-10, 10, false}, 0.5);
