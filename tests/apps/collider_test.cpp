@@ -199,7 +199,9 @@ TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
   EXPECT_LT(std::abs(crossings[0]["at"][1].get<double>()), 0.06);
   std::vector<std::string> start = words(scratch, "run", 1);
   start.insert(start.end(), {"--set", high});
-  EXPECT_EQ(run(scratch, start).code, 3);
+  const auto refused = run(scratch, start);
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("muslin: " + scene + ": surfaces cross at the start: face "));
   start.emplace_back("--allow-tangled");
   EXPECT_EQ(run(scratch, start).code, 0);
 

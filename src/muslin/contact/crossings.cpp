@@ -85,7 +85,7 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
       c.first_triangle = owners.of_edge[index(pair.first)];
       c.second_triangle = owners.of_edge[index(pair.second)];
     } else {
-      c.kind = Crossing::Kind::beneath;
+      if (at.distance < 0) c.kind = Crossing::Kind::beneath;
       c.first_triangle = owners.of_point[index(pair.first)];
     }
     // On the surface of the thinner body: the middle of a ball is where nobody sees anything.
@@ -126,16 +126,16 @@ std::string describe(const ContactModel& model, const Crossing& c) {
                      feature_name(model, c.second_triangle, c.second_body), c.at.x(), c.at.y(), c.at.z());
 }
 
-void refuse_crossings(const ContactModel& model, ConstVectors q) {
+void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& place) {
   const std::vector<Crossing> found = find_crossings(model, q);
   if (found.empty()) return;
   std::string list;
   for (std::size_t i = 0; i < std::min(found.size(), listed); ++i)
     list += (i > 0 ? "; " : "") + describe(model, found[i]);
   if (found.size() > listed) list += fmt::format("; and {} more", found.size() - listed);
-  throw Error(ErrorKind::input, fmt::format("surfaces cross at the start: {}", list),
-              "move them apart, or allow tangled surfaces (--allow-tangled), which leaves these free until "
-              "they part");
+  throw Error(ErrorKind::input, place, fmt::format("surfaces cross at the start: {}", list),
+              "move them apart (`muslin check` lists and draws them), or allow tangled surfaces "
+              "(--allow-tangled), which leaves these free until they part");
 }
 
 }  // namespace muslin

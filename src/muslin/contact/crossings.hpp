@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "muslin/contact/contact_model.hpp"
+#include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
@@ -14,7 +15,7 @@ namespace muslin {
 struct Crossing {
   enum class Kind {
     crossing,   ///< two triangles meet, by the exact test
-    too_close,  ///< closer than their thicknesses, or a vertex inside a ball, a capsule
+    too_close,  ///< no farther than their thicknesses, or a vertex inside a ball, a capsule
     beneath,    ///< a vertex beneath a plane
   };
   Kind kind = Kind::crossing;
@@ -34,7 +35,7 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
 /// One line, such as: face 12 of "cloth" crosses face 3 of "table" near (0.1, 0.2, 0.3) m.
 std::string describe(const ContactModel& model, const Crossing& crossing);
 
-/// Throws Error(input) that lists the first few, if there is any.
-void refuse_crossings(const ContactModel& model, ConstVectors q);
+/// Throws Error(input) that lists the first few, if there is any; at `place`, perhaps of the scene.
+void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& place = {});
 
 }  // namespace muslin

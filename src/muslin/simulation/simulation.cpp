@@ -145,7 +145,8 @@ void Simulation::Parts::start_contact() {
   if (model->scene.solver.integrator == Integrator::symplectic_euler)
     throw Error(ErrorKind::usage, "symplectic_euler does not work with contact",
                 "use implicit_euler, bdf2 or linearly_implicit_euler");
-  if (!options.allow_tangled) refuse_crossings(*model->contact, state.positions);
+  if (!options.allow_tangled)
+    refuse_crossings(*model->contact, state.positions, {model->scene.file.string()});
   touch();
   tally.smallest_gap = guard->memory().smallest_gap;
 }
@@ -495,7 +496,8 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   }
   SavedRun saved = saved_run(bytes, parts.model->vertex_count());
   if (parts.guard) {
-    if (!parts.options.allow_tangled) refuse_crossings(*parts.model->contact, saved.state.positions);
+    if (!parts.options.allow_tangled)
+      refuse_crossings(*parts.model->contact, saved.state.positions, {parts.model->scene.file.string()});
     parts.guard->restore(std::move(saved.contact));
     if (parts.options.allow_tangled) parts.guard->leave_tangled(saved.state.positions);
   } else {
