@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include <fmt/format.h>
 #include <tbb/parallel_sort.h>
 
 #include "muslin/core/error.hpp"
@@ -175,8 +176,8 @@ void warn(MeshReport& report) {
   const auto say = [&](std::string sentence) { report.warnings.push_back(std::move(sentence)); };
   const double size = report.bounds.sizes().maxCoeff();
   if (size > 200 || size < 1e-3)
-    say("The mesh is " + std::to_string(size) +
-        " m across; if its file is in other units than metres, scale it.");
+    say(fmt::format("The mesh is {:.3g} m across; if its file is in other units than metres, scale it.",
+                    size));
   if (report.degenerate_faces > 0)
     say(counted(report.degenerate_faces, "face has", "faces have") +
         " no area; they are kept but carry nothing: dissolve degenerate faces in the modeller.");
