@@ -103,6 +103,11 @@ TEST(ColliderRun, RefusesToResumeWithAnotherCollider) {
   const auto outcome = run(scratch, resume);
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("collider.1.radius"));
+  // So it is where the other collider would cross the cloth at the start.
+  resume.back() = "collider.post.radius=0.2";
+  const auto crossing = run(scratch, resume);
+  EXPECT_EQ(crossing.code, 3);
+  EXPECT_THAT(crossing.err, HasSubstr("changed: collider.1.radius"));
 }
 
 /// A patch of cloth lies on a slope of tan = 0.3, drawn level: gravity is tilted instead.
@@ -215,6 +220,38 @@ TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
   EXPECT_EQ(run(scratch, resume).code, 0);
   EXPECT_EQ(json_of_run()["allow_tangled"], true);
   EXPECT_EQ(RunReader(scratch / "run").diagnostics().size(), 3u);
+}
+
+TEST(ColliderRun, SaysThatSomethingWasHeldBack) {
+  const Scratch scratch;
+  write_scene(scratch);
+  // A floor that rises into a plane above: the cloth between them stops it, until it sinks again.
+  test::write_bytes(
+      scratch / "press.toml",
+      "[time]\nduration = 0.5\n[[body]]\nname = \"cloth\"\nmesh = \"sheet.obj\"\nmodel = \"shell\"\n"
+      "material = { areal_density = 0.2, membrane_warp = 500, bending_warp = 1e-4 }\n"
+      "[[collider]]\nname = \"floor\"\nshape = \"plane\"\ncenter = [0, -0.01, 0]\n"
+      "[[collider]]\nname = \"lid\"\nshape = \"box\"\nsize = [1, 0.1, 1]\ncenter = [0, 0.06, 0]\n"
+      "keyframes = [{ time = 0 }, { time = 0.1, translate = [0, -0.05, 0] }, { time = 0.3 }]\n");
+  const std::string scene = (scratch / "press.toml").string(), out = (scratch / "run").string();
+  const auto json_of_session = [&](std::size_t i) {
+    return nlohmann::json::parse(bytes_of(scratch / "run" / "run.json"))["timings"]["sessions"][i];
+  };
+  const auto pressed = run(scratch, {"run", scene, "-o", out, "--frames", "4", "--quiet"});
+  EXPECT_EQ(pressed.code, 0) << pressed.err;
+  EXPECT_THAT(pressed.err,
+              testing::ContainsRegex("muslin: warning: pins or colliders that move could not follow "
+                                     "their keyframes in [0-9]+ frames?, the first [0-9]+: .*they "
+                                     "still are behind"));
+  EXPECT_GT(json_of_session(0)["held_back"]["most"], 0);
+  EXPECT_EQ(json_of_session(0)["held_back"]["last"], 4);
+  const auto freed = run(scratch, {"run", scene, "-o", out, "--quiet", "--resume"});
+  EXPECT_EQ(freed.code, 0) << freed.err;
+  EXPECT_THAT(freed.err, HasSubstr("they have caught up"));
+  const auto free = run(scratch, {"run", scene, "-o", (scratch / "free").string(), "--quiet", "--set",
+                                  "collider.lid.keyframes=[{time=0}]"});
+  EXPECT_EQ(free.code, 0) << free.err;
+  EXPECT_THAT(free.err, testing::Not(HasSubstr("could not follow")));
 }
 
 }  // namespace

@@ -231,6 +231,14 @@ TEST(RunDirectory, ADamagedCheckpointFallsBackOnTheOneBefore) {
   expect_same_run(scratch / "straight", scratch / "run");
 }
 
+TEST(RunDirectory, ACacheThatIsGoneIsNamed) {
+  Scratch scratch;
+  run_to(scratch / "run", 2, false);
+  fs::remove(scratch / "run/flag.skin.pc2");
+  expect_error(ErrorKind::file, "flag.skin.pc2: cannot open the point cache",
+               [&] { run_to(scratch / "run", 3, true); });
+}
+
 TEST(RunDirectory, AFullDiskIsAnErrorAndTheRunGoesOnLater) {
   Scratch scratch;
   constexpr int frames = 40;

@@ -31,6 +31,14 @@ class Pace {
   double from_;
 };
 
+std::string describe(const HeldBack& held, int last_frame) {
+  return fmt::format(
+      "pins or colliders that move could not follow their keyframes in {}, the first {}: something "
+      "held back up to {} of their vertices; {}",
+      held.frames == 1 ? "1 frame" : fmt::format("{} frames", held.frames), held.first, held.most,
+      held.last == last_frame ? "they still are behind" : "they have caught up");
+}
+
 }  // namespace
 
 RunResult run_scene(const std::filesystem::path& file, const RunOptions& options) {
@@ -50,6 +58,9 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     if (options.report) options.report(now);
   };
   const auto model = std::make_shared<const Model>(build_model(scene, building));
+  // Before the start is looked at: other bodies may cross where those of the run did not.
+  if (options.resume && is_run(options.directory) && !list_checkpoints(options.directory).empty())
+    changes_since(options.directory, *model);
   const bool tangled = options.allow_tangled || (options.resume && is_tangled_run(options.directory));
   Simulation simulation(model, {.allow_tangled = tangled});
   RunWriter writer(options.directory, simulation, total, options.resume,
@@ -96,6 +107,8 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     throw;
   }
   result.last_frame = simulation.frame();
+  if (writer.held_back().frames > 0)
+    result.warnings.push_back(describe(writer.held_back(), result.last_frame));
   return result;
 }
 

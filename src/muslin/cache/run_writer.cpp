@@ -74,6 +74,31 @@ struct BodyCaches {
 
 }  // namespace
 
+std::vector<std::string> changes_since(const fs::path& directory, const Model& model) {
+  const Json run = Json::parse(read_file(directory / "run.json"), nullptr, false);
+  std::vector<std::string> changes;
+  const Json old_scene = run.value("scene", Json());
+  std::vector<std::string> bodies;
+  for (const auto& step : Json::diff(old_scene, parsed_scene(model))) {
+    const std::string setting = dotted(step.value("path", ""));
+    changes.push_back(setting);
+    const bool of_collider =
+        setting.starts_with("collider") && setting.find("keyframes") == std::string::npos;
+    if (setting.ends_with(".friction")) continue;
+    if (setting.starts_with("body") || of_collider) bodies.push_back(setting);
+  }
+  if (!bodies.empty()) {
+    throw Error(ErrorKind::input, {directory.string()},
+                "the bodies are not those of the run to resume; changed: " + joined(bodies),
+                "undo the change, or start the run anew without --resume");
+  }
+  if (run.value("frame_rate", 0.0) != model.scene.time.frame_rate) {
+    throw Error(ErrorKind::input, {directory.string()}, "the frame rate is not that of the run to resume",
+                "undo the change, or start the run anew without --resume");
+  }
+  return changes;
+}
+
 const char* name_of(RunStatus status) {
   switch (status) {
     case RunStatus::running:
@@ -100,6 +125,7 @@ struct RunWriter::Parts {
   std::vector<std::string> changes;
   Json sessions = Json::array();
   int first_frame = 0;
+  HeldBack held_back;
   int durable_frame = -1;  ///< of the newest checkpoint known to be on the disk
   Clock::time_point begin = Clock::now(), last_checkpoint = begin, last_sync = begin;
 
@@ -108,12 +134,21 @@ struct RunWriter::Parts {
         simulation(the_simulation),
         total_frames(frames),
         history(the_history) {}
+
+  void note_held_back() {
+    const Diagnostics& row = simulation.diagnostics();
+    if (row.held_back == 0) return;
+    if (held_back.frames == 0) held_back.first = row.frame;
+    ++held_back.frames;
+    held_back.last = row.frame;
+    held_back.most = std::max(held_back.most, row.held_back);
+  }
+
   const Model& model() const { return simulation.model(); }
   void claim();
   void start();
   std::vector<CheckpointFile> checkpoints_to_try() const;
   bool resume();
-  void compare_scene(const Json& run);
   void open_files(int frames);
   void append_points();
   void write_checkpoint(bool durable);
@@ -221,8 +256,8 @@ bool RunWriter::Parts::resume() {
   if (!is_run(directory) && history.resume_from < 0) return false;
   const std::vector<CheckpointFile> checkpoints = checkpoints_to_try();
   if (checkpoints.empty()) return false;
+  changes = changes_since(directory, model());
   const Json run = Json::parse(read_file(directory / "run.json"), nullptr, false);
-  compare_scene(run);
   std::optional<Error> trouble;
   for (const CheckpointFile& file : checkpoints) {
     try {
@@ -235,33 +270,11 @@ bool RunWriter::Parts::resume() {
     } catch (const Error& error) {
       // The newest checkpoint may be damaged by a power cut; the one before it serves as well.
       caches.clear();
-      trouble = Error(error.kind(), {file.path.string()}, error.problem(), error.remedy());
+      const Place place = error.place().file.empty() ? Place{file.path.string()} : error.place();
+      trouble = Error(error.kind(), place, error.problem(), error.remedy());
     }
   }
   throw *trouble;
-}
-
-/// Notes what changed since the run was begun; refuses what the frames already written cannot bear.
-void RunWriter::Parts::compare_scene(const Json& run) {
-  const Json old_scene = run.value("scene", Json());
-  std::vector<std::string> bodies;
-  for (const auto& step : Json::diff(old_scene, parsed_scene(model()))) {
-    const std::string setting = dotted(step.value("path", ""));
-    changes.push_back(setting);
-    const bool of_collider =
-        setting.starts_with("collider") && setting.find("keyframes") == std::string::npos;
-    if (setting.ends_with(".friction")) continue;
-    if (setting.starts_with("body") || of_collider) bodies.push_back(setting);
-  }
-  if (!bodies.empty()) {
-    throw Error(ErrorKind::input, {directory.string()},
-                "the bodies are not those of the run to resume; changed: " + joined(bodies),
-                "undo the change, or start the run anew without --resume");
-  }
-  if (run.value("frame_rate", 0.0) != model().scene.time.frame_rate) {
-    throw Error(ErrorKind::input, {directory.string()}, "the frame rate is not that of the run to resume",
-                "undo the change, or start the run anew without --resume");
-  }
 }
 
 void RunWriter::Parts::append_points() {
@@ -351,10 +364,17 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
                     {"threads", thread_count()},
                     {"compiler", __VERSION__}};
   Json all = sessions;
-  all.push_back({{"from_frame", first_frame},
-                 {"to_frame", simulation.frame()},
-                 {"wall_s", std::chrono::duration<double>(Clock::now() - begin).count()},
-                 {"changed", changes}});
+  Json session = {{"from_frame", first_frame},
+                  {"to_frame", simulation.frame()},
+                  {"wall_s", std::chrono::duration<double>(Clock::now() - begin).count()},
+                  {"changed", changes}};
+  if (held_back.frames > 0) {
+    session["held_back"] = {{"frames", held_back.frames},
+                            {"first", held_back.first},
+                            {"last", held_back.last},
+                            {"most", held_back.most}};
+  }
+  all.push_back(session);
   run["timings"] = {{"sessions", all}};
   write_atomically(directory / "run.json", run.dump(2) + "\n");
 }
@@ -383,11 +403,14 @@ RunWriter::~RunWriter() = default;
 bool RunWriter::resumed() const { return parts_->resumed; }
 const std::vector<std::string>& RunWriter::changes() const { return parts_->changes; }
 
+const HeldBack& RunWriter::held_back() const { return parts_->held_back; }
+
 void RunWriter::write_frame() {
   Parts& parts = *parts_;
   parts.append_points();
   parts.diagnostics.append(diagnostics_row(parts.simulation.diagnostics()));
   parts.probes.append(probe_rows(parts.simulation));
+  parts.note_held_back();
   const auto now = Clock::now();
   const bool durable = now - parts.last_sync >= sync_interval;
   const std::size_t state_bytes = 4 * sizeof(Vec3) * parts.model().vertex_count();

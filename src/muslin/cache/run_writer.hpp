@@ -20,6 +20,17 @@ struct RunHistory {
   int resume_from = -1;  ///< resume from that of this frame and cut off what lies behind it; −1: the newest
 };
 
+/// Settings of the run in `directory` that the model's scene has otherwise, e.g. "time.duration". Errors:
+/// input, naming them, if the frames already written could not bear it; file.
+std::vector<std::string> changes_since(const std::filesystem::path& directory, const Model& model);
+
+/// Frames at whose end pins or colliders were behind their keyframes or sequence, for something in their way.
+struct HeldBack {
+  int frames = 0;           ///< how many
+  int first = 0, last = 0;  ///< of these
+  int most = 0;             ///< vertices, in the worst frame
+};
+
 /// Writes a run. One process at a time; a lock in `checkpoint/` sees to it.
 ///
 /// A frame goes to the disk in this order: points, rows, checkpoint. Whatever moment the process is killed,
@@ -44,6 +55,8 @@ class RunWriter {
   const std::vector<std::string>& changes() const;
   /// Adds the frame that the simulation has just finished.
   void write_frame();
+  /// Of the frames written so far by this writer.
+  const HeldBack& held_back() const;
   /// Writes a checkpoint of the very step reached, flushes everything, sets the status. `reason` says why a
   /// run failed or stopped.
   void finish(RunStatus status, const std::string& reason = "");
