@@ -31,10 +31,10 @@ void add_check(CLI::App& program) {
       print(a->json ? describe_json(model, crossings) : describe_text(model, crossings));
       if (!a->picture.empty()) write_png(a->picture, draw_start(model, crossings));
       if (!crossings.empty()) {
-        throw Error(
-            ErrorKind::input, {a->file},
-            fmt::format("surfaces cross at the start in {} places", crossings.size()),
-            a->picture.empty() ? "move them apart; --picture FILE.png shows where" : "move them apart");
+        const std::string what = advice(*model.contact, model.rest_positions, crossings);
+        throw Error(ErrorKind::input, {a->file},
+                    fmt::format("surfaces cross at the start in {} places", crossings.size()),
+                    a->picture.empty() ? what + "; --picture FILE.png shows where" : what);
       }
       return;
     }

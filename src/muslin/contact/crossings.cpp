@@ -126,6 +126,22 @@ std::string describe(const ContactModel& model, const Crossing& c) {
                      feature_name(model, c.second_triangle, c.second_body), c.at.x(), c.at.y(), c.at.z());
 }
 
+std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found) {
+  std::vector<Vec3> x(model.surface->point_count());
+  model.map->apply(q, x);
+  const bool unwelded = std::any_of(found.begin(), found.end(), [&](const Crossing& c) {
+    if (c.first_body != c.second_body || c.first_triangle < 0 || c.second_triangle < 0) return false;
+    const Vec3i &a = model.surface->triangles()[index(c.first_triangle)],
+                &b = model.surface->triangles()[index(c.second_triangle)];
+    for (int i : a)
+      for (int j : b)
+        if (i != j && x[index(i)] == x[index(j)]) return true;
+    return false;
+  });
+  return unwelded ? "merge vertices of a mesh that lie at one place (Blender: Mesh > Merge > By Distance)"
+                  : "move them apart";
+}
+
 void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& place) {
   const std::vector<Crossing> found = find_crossings(model, q);
   if (found.empty()) return;
@@ -134,8 +150,9 @@ void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& pl
     list += (i > 0 ? "; " : "") + describe(model, found[i]);
   if (found.size() > listed) list += fmt::format("; and {} more", found.size() - listed);
   throw Error(ErrorKind::input, place, fmt::format("surfaces cross at the start: {}", list),
-              "move them apart (`muslin check` lists and draws them), or allow tangled surfaces "
-              "(--allow-tangled), which leaves these free until they part");
+              advice(model, q, found) +
+                  " (`muslin check` lists and draws them), or allow tangled surfaces (--allow-tangled), "
+                  "which leaves these free until they part");
 }
 
 }  // namespace muslin

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
 
 /// One line, such as: face 12 of "cloth" crosses face 3 of "table" near (0.1, 0.2, 0.3) m.
 std::string describe(const ContactModel& model, const Crossing& crossing);
+
+/// What to do about them: to move apart what crosses, or to weld a mesh that meets itself in vertices at one
+/// place.
+std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found);
 
 /// Throws Error(input) that lists the first few, if there is any; at `place`, perhaps of the scene.
 void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& place = {});
