@@ -332,10 +332,36 @@ TEST(StepLimiter, KeepsFreeClothSlidingOverAFloorFromLocking) {
   for (std::size_t v = 0; v < crumpled.size(); ++v) EXPECT_LT((scene.q[v] - 2 * crumpled[v]).norm(), 1e-9);
 }
 
+TEST(StepLimiter, KeepsAShareOfEveryGapIfAsked) {
+  // What stops short of the floor by itself is stopped there as well.
+  for (const double share : {0.0, 0.4}) {
+    std::mt19937_64 random(3);
+    Scene scene = cloth_scene(14);
+    ContactCandidates candidates = scene.candidates();
+    const StepLimiter limiter(
+        scene.map,
+        {.gap_floor = 1e-5 * scene.contact_distance, .kept_share = share, .prescribed = {}, .groups = {}});
+    double before = scene.contact_distance, least_kept = 1;
+    for (int step = 0; step < 8; ++step) {
+      limited_step(scene, candidates, limiter, random_step(scene.q.size(), 0.05, random), 1e-3);
+      const double gap =
+          std::min(test::distances_at(candidates, scene.q).smallest_gap(), scene.contact_distance);
+      least_kept = std::min(least_kept, gap / before);
+      before = gap;
+    }
+    if (share > 0) {
+      EXPECT_GT(least_kept, 0.99 * share);
+    } else {
+      EXPECT_LT(least_kept, 0.3);
+    }
+  }
+}
+
 TEST(StepLimiter, RefusesNonsense) {
   const auto map = std::make_shared<SurfaceMap>(SurfaceMap::identity(3));
   EXPECT_THROW(StepLimiter(map, {.gap_floor = 0, .prescribed = {}, .groups = {}}), Error);
   EXPECT_THROW(StepLimiter(map, {.gap_floor = 1, .prescribed = {1}, .groups = {}}), Error);
+  EXPECT_THROW(StepLimiter(map, {.gap_floor = 1, .kept_share = 1, .prescribed = {}, .groups = {}}), Error);
 }
 
 }  // namespace

@@ -122,8 +122,8 @@ const std::vector<Touch> touches = {
 
     // Falls on the ball and wraps it.
     {"sphere_drop", 120, 42, 30, {coarse}},
-    // Stands on the floor and buckles.
-    {"fold_on_floor", 120, 27, 15, {coarse}},
+    // Stands on the floor, buckles, and folds up over itself, vertex on vertex.
+    {"fold_on_floor", 120, 48, 36, {coarse}},
     // Falls on the ball, which turns under it: friction at work.
     {"rotating_sphere",
      120,

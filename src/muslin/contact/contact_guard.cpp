@@ -27,6 +27,10 @@ constexpr double edge_distances = 5;
 /// Of the gap floor in converged steps, for which contact has to hold whatever presses; fast ones rely on the
 /// limiter.
 constexpr double converged_floor = 0.01;
+/// Of gaps in each iteration of a converged step. Iterates go far; one that ends with some edges at a
+/// thousandth of the range meets forces there that nothing else comes near, and hardly leaves: what moves
+/// along at such gaps is stopped.
+constexpr double converged_kept = 0.1;
 /// Friction is full at this speed [m/s].
 constexpr double stick_speed = 1e-3;
 
@@ -52,7 +56,10 @@ double mean_edge(const ContactModel& model) {
 
 StepLimits limits_of(const ContactModel& model) {
   StepLimits limits = model.limits;
-  if (model.mode == ContactMode::converged) limits.gap_floor *= converged_floor;
+  if (model.mode == ContactMode::converged) {
+    limits.gap_floor *= converged_floor;
+    limits.kept_share = converged_kept;
+  }
   return limits;
 }
 

@@ -81,7 +81,8 @@ struct StepLimiter::Work {
   double required_distance(const ContactPair& pair, double distance) const {
     // What is closer than the floor, or than its thickness, comes no closer.
     const double gap = distance - pair.thickness;
-    return gap > 0 ? pair.thickness + std::min(limits.gap_floor, gap * (1 - 1e-6)) : distance * (1 - 1e-6);
+    const double least = std::max(limits.gap_floor, limits.kept_share * std::min(gap, pair.range));
+    return gap > 0 ? pair.thickness + std::min(least, gap * (1 - 1e-6)) : distance * (1 - 1e-6);
   }
 
   /// How much of its step pair i may take.
@@ -337,6 +338,9 @@ StepLimiter::StepLimiter(std::shared_ptr<const SurfaceMap> map, StepLimits limit
     : map_(std::move(map)), limits_(std::move(limits)) {
   if (!(limits_.gap_floor > 0))
     throw Error(ErrorKind::usage, "the gap floor is not positive", "give a length in metres");
+  if (!(limits_.kept_share >= 0 && limits_.kept_share < 1))
+    throw Error(ErrorKind::usage, "the share of gaps to keep is not within 0 and 1",
+                "give 0 or a little more");
   const auto fits = [&](std::size_t size) { return size == 0 || size == map_->vertex_count(); };
   if (!fits(limits_.prescribed.size()) || !fits(limits_.groups.size()))
     throw Error(ErrorKind::usage, "a step limiter needs one entry for each vertex", "give #V or none");

@@ -25,6 +25,8 @@ struct StepLimits {
   /// The gap that a step leaves every pair that had more [m]. Absolute: a share of the gap at the start would
   /// let gaps shrink step by step until rounding lets features through.
   double gap_floor = 1e-5;
+  /// And this share of what it had, so that no step ends where contact is far stiffer than where it began.
+  double kept_share = 0;
   /// #V, 1 for vertices that move along keyframes: others give way to them. Empty: none.
   std::vector<std::uint8_t> prescribed;
   /// #V, vertices of the same number ≥ 0 are shortened together, −1: alone. Empty: all alone. For what must

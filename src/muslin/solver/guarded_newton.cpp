@@ -16,7 +16,7 @@ namespace {
 constexpr double armijo = 1e-4;
 constexpr double rounding = 1e-12;  // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-6;
-constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-3, fast_forcing = 0.05;
+constexpr double loosest_forcing = 0.01, tightest_forcing = 1e-3, fast_forcing = 0.05;
 /// A fast step ends early where its last motion was below the first share of the guard's resolution and left
 /// no more than so much of the gradient, makes one iteration more where the motion was above the second, and
 /// as many as so many more while it is above the third.
