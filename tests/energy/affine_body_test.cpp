@@ -71,14 +71,10 @@ TEST(AffineBodyEnergy, LinearizationIsPositiveSemidefiniteAndTheHessianWhereStre
     h.finish();
     for (std::uint32_t seed = 1; seed < 6; ++seed) {
       const std::vector<Vec3> p = test::random_vectors(4, 1, seed);
-      FloatVectors from, to;
-      from.resize(4);
-      to.resize(4);
+      std::vector<Float4> from(4), to(4, Float4{0, 0, 0, 0});
       for (std::size_t v = 0; v < 4; ++v) {
-        from.data().x[v] = static_cast<float>(p[v].x());
-        from.data().y[v] = static_cast<float>(p[v].y());
-        from.data().z[v] = static_cast<float>(p[v].z());
-        to.data().x[v] = to.data().y[v] = to.data().z[v] = 0;
+        from[v] = Float4{static_cast<float>(p[v].x()), static_cast<float>(p[v].y()),
+                         static_cast<float>(p[v].z()), 0};
       }
       const double curvature = h.add_rest_product(from.data(), to.data());
       EXPECT_GE(curvature, 0);

@@ -40,15 +40,13 @@ inline std::vector<Vec3> product(Linearization& h, ConstVectors p) {
     y[a] -= f, y[b] += f;
   });
   if (!h.has_rest()) return y;
-  FloatVectors from, to;
-  from.resize(p.size()), to.resize(p.size());
-  const Floats f = from.data(), t = to.data();
+  std::vector<Float4> from(p.size()), to(p.size(), Float4{0, 0, 0, 0});
   for (std::size_t v = 0; v < p.size(); ++v) {
-    f.x[v] = static_cast<float>(p[v].x()), f.y[v] = static_cast<float>(p[v].y());
-    f.z[v] = static_cast<float>(p[v].z()), t.x[v] = t.y[v] = t.z[v] = 0;
+    from[v] =
+        Float4{static_cast<float>(p[v].x()), static_cast<float>(p[v].y()), static_cast<float>(p[v].z()), 0};
   }
-  h.add_rest_product(f, t);
-  for (std::size_t v = 0; v < p.size(); ++v) y[v] += Vec3(t.x[v], t.y[v], t.z[v]);
+  h.add_rest_product(from.data(), to.data());
+  for (std::size_t v = 0; v < p.size(); ++v) y[v] += Vec3(to[v][0], to[v][1], to[v][2]);
   return y;
 }
 

@@ -32,12 +32,12 @@ void spread(const Mat3& to_axes, Vectors corners) {
 }
 
 /// All pairs of four vertices: the same for every body.
-const std::shared_ptr<const BlockPattern>& all_pairs() {
+const std::shared_ptr<const SymmetricPattern>& all_pairs() {
   static const auto pattern = [] {
     std::vector<std::pair<int, int>> pairs;
     for (int a = 0; a < 4; ++a)
       for (int b = a; b < 4; ++b) pairs.emplace_back(a, b);
-    return std::make_shared<const BlockPattern>(std::move(pairs), 4);
+    return std::make_shared<const SymmetricPattern>(std::move(pairs), 4);
   }();
   return pattern;
 }
@@ -105,9 +105,9 @@ void AffineBodyEnergy::add_diagonal_blocks(ConstVectors q, std::span<Mat3> block
 
 void AffineBodyEnergy::linearize(ConstVectors q, Linearization& into, std::size_t first) const {
   const auto h = projected(half_axes(q));
-  BlockMatrix& matrix = into.matrix(all_pairs(), first);
+  SymmetricMatrix& matrix = into.matrix(all_pairs(), first);
   for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
+    for (int column = row; column < 4; ++column) {
       Mat3 block = Mat3::Zero();
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)

@@ -13,7 +13,7 @@
 
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/vectors.hpp"
-#include "muslin/potential/block_matrix.hpp"
+#include "muslin/potential/symmetric_matrix.hpp"
 
 namespace muslin {
 
@@ -140,12 +140,20 @@ class ElementSlabs {
     }
   }
 
-  /// By entry: the blocks of all pairs of corners, row by row.
-  std::vector<std::array<int, N * N>> blocks(const BlockPattern& pattern) const {
-    std::vector<std::array<int, N * N>> slots(vertices_.size());
+  /// By entry: the blocks of the pairs of corners i ≤ j, (0,0), (0,1), …, (1,1), …; ~block where that of i
+  /// is the later vertex, so that the block is of row j and column i.
+  static constexpr int pair_count = N * (N + 1) / 2;
+  using Slots = std::array<int, pair_count>;
+  std::vector<Slots> slots(const SymmetricPattern& pattern) const {
+    std::vector<Slots> slots(vertices_.size());
     for (std::size_t e = 0; e < slots.size(); ++e) {
-      for (int i = 0; i < N; ++i)
-        for (int j = 0; j < N; ++j) slots[e][i * N + j] = pattern.find(vertices_[e][i], vertices_[e][j]);
+      std::size_t pair = 0;
+      for (std::size_t i = 0; i < N; ++i) {
+        for (std::size_t j = i; j < N; ++j) {
+          const int v = vertices_[e][i], u = vertices_[e][j];
+          slots[e][pair++] = v <= u ? pattern.find(v, u) : ~pattern.find(u, v);
+        }
+      }
     }
     return slots;
   }

@@ -204,9 +204,10 @@ double rigidity(const BendingModuli& m, double warp_share) {
          (4 * m.bias - m.warp - m.weft) * warp_share * weft_share;
 }
 
-/// blocks += scale k g gᵀ of each lane, in those rows that `rows` has a bit for.
+/// blocks += scale k g gᵀ of each lane, those whose rows are of corners that `rows` has a bit for.
 MUSLIN_VECTOR_CODE void add_squares(const Batch<4>& g, const double* stiffness, double scale, int count,
-                                    const unsigned* rows, const std::array<int, 16>* slots, Float4* blocks) {
+                                    const unsigned* rows, const ElementSlabs<4>::Slots* slots,
+                                    Float4* blocks) {
   float d[4][3][lanes];
   for (int l = 0; l < lanes; ++l) {
     const double root = std::sqrt(scale * stiffness[l]);
@@ -214,13 +215,15 @@ MUSLIN_VECTOR_CODE void add_squares(const Batch<4>& g, const double* stiffness, 
       for (int k = 0; k < 3; ++k) d[c][k][l] = static_cast<float>(root * g[c][k][l]);
   }
   for (int l = 0; l < count; ++l) {
+    Float4 of_corner[4];
+    for (int c = 0; c < 4; ++c) of_corner[c] = Float4{d[c][0][l], d[c][1][l], d[c][2][l], 0};
+    const int* slot = slots[l].data();
     for (int i = 0; i < 4; ++i) {
-      if ((rows[l] >> i & 1U) == 0) continue;
-      const Float4 along = {d[i][0][l], d[i][1][l], d[i][2][l], 0};
-      for (int j = 0; j < 4; ++j) {
-        Float4* const block =
-            blocks + 3 * static_cast<std::ptrdiff_t>(slots[l][static_cast<std::size_t>(4 * i + j)]);
-        for (int k = 0; k < 3; ++k) block[k] += d[j][k][l] * along;
+      for (int j = i; j < 4; ++j, ++slot) {
+        const int row = *slot >= 0 ? i : j, column = *slot >= 0 ? j : i;
+        if ((rows[l] >> row & 1U) == 0) continue;
+        Float4* const block = blocks + 3 * static_cast<std::ptrdiff_t>(*slot >= 0 ? *slot : ~*slot);
+        for (int k = 0; k < 3; ++k) block[k] += of_corner[column][k] * of_corner[row];
       }
     }
   }
@@ -234,7 +237,7 @@ double lowest_bias(double warp, double weft) {
 }
 
 HingeBending::HingeBending(const Shell& shell, const BendingModuli& moduli,
-                           std::shared_ptr<const BlockPattern> block_pattern)
+                           std::shared_ptr<const SymmetricPattern> block_pattern)
     : ShellEnergy(std::move(block_pattern)), slabs_(vertices_of(shell), shell.vertex_count()) {
   assert(moduli.warp >= 0 && moduli.weft >= 0);
   stiffness_ = slabs_.by_entry<double>([&](std::size_t e) {
@@ -242,7 +245,7 @@ HingeBending::HingeBending(const Shell& shell, const BendingModuli& moduli,
     return std::max(0.0, rigidity(moduli, hinge.warp_share)) * hinge.length * hinge.length / hinge.area;
   });
   angle_ = slabs_.by_entry<double>([&](std::size_t e) { return shell.hinges[e].angle; });
-  if (pattern()) slots_ = slabs_.blocks(*pattern());
+  if (pattern()) slots_ = slabs_.slots(*pattern());
 }
 
 double HingeBending::value(ConstVectors x) const {
@@ -297,7 +300,8 @@ void HingeBending::add_stiffness_blocks(Stiffness, ConstVectors x, std::span<Mat
   });
 }
 
-void HingeBending::add_stiffness_matrix(Stiffness, ConstVectors x, double scale, BlockMatrix& matrix) const {
+void HingeBending::add_stiffness_matrix(Stiffness, ConstVectors x, double scale,
+                                        SymmetricMatrix& matrix) const {
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<4>::Slab& slab) {
     Batch<4> corners, g;
     slabs_.gather(first, count, x, corners);

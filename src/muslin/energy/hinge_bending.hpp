@@ -35,19 +35,20 @@ class HingeBending : public ShellEnergy {
  public:
   /// `pattern` is the shell's block_pattern, or null.
   HingeBending(const Shell& shell, const BendingModuli& moduli,
-               std::shared_ptr<const BlockPattern> pattern = nullptr);
+               std::shared_ptr<const SymmetricPattern> pattern = nullptr);
 
   double value(ConstVectors x) const override;
   void add_gradient(ConstVectors x, Vectors g) const override;
   double add_gradient_and_value(ConstVectors x, Vectors g) const override;
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
-  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, BlockMatrix& matrix) const override;
+  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+                            SymmetricMatrix& matrix) const override;
 
  private:
   ElementSlabs<4> slabs_;
-  std::vector<std::array<int, 16>> slots_;  // by entry: the block of each pair of corners
-  std::vector<double> stiffness_, angle_;   // by entry: k [N·m] and θ₀
+  std::vector<ElementSlabs<4>::Slots> slots_;  // by entry: the block of each pair of corners
+  std::vector<double> stiffness_, angle_;      // by entry: k [N·m] and θ₀
 };
 
 }  // namespace muslin

@@ -186,9 +186,9 @@ MUSLIN_VECTOR_CODE void block_factors(const MembraneEnergy::Constants& c, Stiffn
   }
 }
 
-/// Adds the blocks of those rows of lane l that `rows` has a bit for.
-MUSLIN_INLINE void add_block_rows(const BlockFactors& f, int l, unsigned rows, const int* slots,
-                                  Float4* blocks) {
+/// Adds the blocks of lane l whose rows are of corners that `rows` has a bit for.
+MUSLIN_INLINE void add_block_rows(const BlockFactors& f, int l, unsigned rows,
+                                  const ElementSlabs<3>::Slots& slots, Float4* blocks) {
   const Float4 a = {f.a[0][l], f.a[1][l], f.a[2][l], 0}, b = {f.b[0][l], f.b[1][l], f.b[2][l], 0};
   Float4 by_a[2][3], by_b[2][3];
   for (int k = 0; k < 3; ++k) {
@@ -206,14 +206,18 @@ MUSLIN_INLINE void add_block_rows(const BlockFactors& f, int l, unsigned rows, c
   int pair = 0;
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j, ++pair) {
-      if ((rows >> i & 1U) != 0) add(slots[3 * i + j], pair, f.ab[pair][l], f.ba[pair][l]);
-      if (j > i && (rows >> j & 1U) != 0) add(slots[3 * j + i], pair, f.ba[pair][l], f.ab[pair][l]);
+      const int slot = slots[static_cast<std::size_t>(pair)];
+      if (slot >= 0) {
+        if ((rows >> i & 1U) != 0) add(slot, pair, f.ab[pair][l], f.ba[pair][l]);
+      } else {
+        if ((rows >> j & 1U) != 0) add(~slot, pair, f.ba[pair][l], f.ab[pair][l]);
+      }
     }
   }
 }
 MUSLIN_VECTOR_CODE void add_blocks(const BlockFactors& f, int count, const unsigned* rows,
-                                   const std::array<int, 9>* slots, Float4* blocks) {
-  for (int l = 0; l < count; ++l) add_block_rows(f, l, rows[l], slots[l].data(), blocks);
+                                   const ElementSlabs<3>::Slots* slots, Float4* blocks) {
+  for (int l = 0; l < count; ++l) add_block_rows(f, l, rows[l], slots[l], blocks);
 }
 
 std::vector<std::array<int, 3>> corners_of(const Shell& shell) {
@@ -230,7 +234,7 @@ Rest rest_at(const std::vector<double> (&rest)[5], int first) {
 }  // namespace
 
 MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
-                               std::shared_ptr<const BlockPattern> block_pattern)
+                               std::shared_ptr<const SymmetricPattern> block_pattern)
     : ShellEnergy(std::move(block_pattern)), slabs_(corners_of(shell), shell.vertex_count()) {
   assert(moduli.warp >= 0 && moduli.weft >= 0 && moduli.shear >= 0 && std::abs(moduli.poisson) < 1);
   const double plane_stress = 1 / (1 - moduli.poisson * moduli.poisson);
@@ -242,7 +246,7 @@ MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
     rest_[i] = slabs_.by_entry<double>([&](std::size_t t) { return shell.inverses[t].data()[i]; });
   }
   rest_[4] = slabs_.by_entry<double>([&](std::size_t t) { return shell.areas[t]; });
-  if (pattern()) slots_ = slabs_.blocks(*pattern());
+  if (pattern()) slots_ = slabs_.slots(*pattern());
 }
 
 double MembraneEnergy::value(ConstVectors x) const {
@@ -310,7 +314,7 @@ void MembraneEnergy::add_stiffness_blocks(Stiffness kind, ConstVectors x, std::s
 }
 
 void MembraneEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
-                                          BlockMatrix& matrix) const {
+                                          SymmetricMatrix& matrix) const {
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {
     Batch<3> corners;
     BlockFactors factors;

@@ -33,14 +33,15 @@ class MembraneEnergy : public ShellEnergy {
  public:
   /// `pattern` is the shell's block_pattern, or null.
   MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
-                 std::shared_ptr<const BlockPattern> pattern = nullptr);
+                 std::shared_ptr<const SymmetricPattern> pattern = nullptr);
 
   double value(ConstVectors x) const override;
   void add_gradient(ConstVectors x, Vectors g) const override;
   double add_gradient_and_value(ConstVectors x, Vectors g) const override;
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
-  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, BlockMatrix& matrix) const override;
+  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+                            SymmetricMatrix& matrix) const override;
 
   struct Constants {
     double c11 = 0, c12 = 0, c22 = 0, g = 0;  ///< [N/m]
@@ -49,7 +50,7 @@ class MembraneEnergy : public ShellEnergy {
  private:
   Constants constants_;
   ElementSlabs<3> slabs_;
-  std::vector<std::array<int, 9>> slots_;  // by entry: the block of each pair of corners
+  std::vector<ElementSlabs<3>::Slots> slots_;  // by entry: the block of each pair of corners
   std::vector<double> rest_[5];  // by entry: the inverse rest edges (00, 10, 01, 11) [1/m] and the area [m²]
 };
 

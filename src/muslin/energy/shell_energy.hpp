@@ -4,8 +4,8 @@
 #include <memory>
 #include <utility>
 
-#include "muslin/potential/block_matrix.hpp"
 #include "muslin/potential/potential.hpp"
+#include "muslin/potential/symmetric_matrix.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
@@ -22,7 +22,7 @@ enum class Stiffness {
 /// costs and saves).
 class ShellEnergy : public Potential {
  public:
-  explicit ShellEnergy(std::shared_ptr<const BlockPattern> pattern)
+  explicit ShellEnergy(std::shared_ptr<const SymmetricPattern> pattern)
       : pattern_(std::move(pattern)), projected_(*this) {}
 
   /// y += K p, K the stiffness of this kind at x, #V by 3.
@@ -38,9 +38,9 @@ class ShellEnergy : public Potential {
   }
   /// Adds `scale` K to the blocks of a matrix of pattern(); `kind` is material or projected.
   virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
-                                    BlockMatrix& matrix) const = 0;
+                                    SymmetricMatrix& matrix) const = 0;
   /// Of the shell, if one was given; without, the inner solver computes products from x.
-  const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
+  const std::shared_ptr<const SymmetricPattern>& pattern() const { return pattern_; }
 
   void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
     if (pattern_) {
@@ -68,12 +68,12 @@ class ShellEnergy : public Potential {
     const ShellEnergy& energy_;
   };
 
-  std::shared_ptr<const BlockPattern> pattern_;
+  std::shared_ptr<const SymmetricPattern> pattern_;
   Projected projected_;
 };
 
 /// The couplings of a shell: of vertices in a triangle or a hinge.
-std::shared_ptr<const BlockPattern> block_pattern(const Shell& shell);
+std::shared_ptr<const SymmetricPattern> block_pattern(const Shell& shell);
 
 /// Dashpots beside the elastic forces, Rayleigh's stiffness-proportional damping: the force −β K v with K
 /// the material stiffness at the positions predicted for the time the step's velocity belongs to

@@ -40,12 +40,13 @@ Couplings& Linearization::couplings(const std::shared_ptr<const CouplingPattern>
   return *storage_.back();
 }
 
-BlockMatrix& Linearization::matrix(const std::shared_ptr<const BlockPattern>& pattern, std::size_t first) {
+SymmetricMatrix& Linearization::matrix(const std::shared_ptr<const SymmetricPattern>& pattern,
+                                       std::size_t first) {
   const auto stored = std::find_if(matrix_storage_.begin(), matrix_storage_.end(),
                                    [&](const auto& m) { return m->is_of(pattern) && m->first() == first; });
   const bool is_new = stored == matrix_storage_.end();
-  if (is_new) matrix_storage_.push_back(std::make_unique<BlockMatrix>());
-  BlockMatrix& matrix = is_new ? *matrix_storage_.back() : **stored;
+  if (is_new) matrix_storage_.push_back(std::make_unique<SymmetricMatrix>());
+  SymmetricMatrix& matrix = is_new ? *matrix_storage_.back() : **stored;
   if (std::find(matrices_.begin(), matrices_.end(), &matrix) == matrices_.end()) {
     matrix.reset(pattern, first);
     matrices_.push_back(&matrix);
@@ -106,7 +107,7 @@ void Linearization::find_rest_diagonal() {
   lower_.resize(size());
   const Floats u = upper_.data(), l = lower_.data();
   for (float* each : {u.x, u.y, u.z, l.x, l.y, l.z}) std::fill_n(each, size(), 0.0F);
-  for (const BlockMatrix* matrix : matrices_) {
+  for (const SymmetricMatrix* matrix : matrices_) {
     const auto first = static_cast<std::ptrdiff_t>(matrix->first());
     matrix->add_diagonal(u + first, l + first);
   }
@@ -135,33 +136,10 @@ void Linearization::project() {
   for (const auto& set : storage_) set->project();
 }
 
-double Linearization::add_rest_product(Floats p, Floats y) {
+double Linearization::add_rest_product(const Float4* p, Float4* y) {
   double sum = 0;
-  for (const BlockMatrix* matrix : matrices_) {
-    const auto first = static_cast<std::ptrdiff_t>(matrix->first());
-    sum += matrix->add_product(p + first, y + first);
-  }
-  if (!has_loose()) return sum;
-  from_.resize(size());
-  into_.resize(size());
-  parallel_for(size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      from_.data()[v] = Float4{p.x[v], p.y[v], p.z[v], 0};
-      into_.data()[v] = Float4{0, 0, 0, 0};
-    }
-  });
-  sum += add_loose_product(from_.data(), into_.data());
-  parallel_for(size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const Float4 f = into_.data()[v];
-      y.x[v] += f[0], y.y[v] += f[1], y.z[v] += f[2];
-    }
-  });
-  return sum;
-}
-
-double Linearization::add_loose_product(const Float4* p, Float4* y) {
-  double sum = 0;
+  for (const SymmetricMatrix* matrix : matrices_)
+    sum += matrix->add_product(p + matrix->first(), y + matrix->first());
   for (std::size_t i = 0; i < relative_count_; ++i)
     sum += relatives_[i]->add_product(p + relatives_[i]->first(), y + relatives_[i]->first());
   if (generals_.empty()) return sum;
@@ -195,7 +173,6 @@ std::size_t Linearization::bytes() const {
   for (const auto& set : storage_) bytes += set->bytes();
   for (const auto& matrix : matrix_storage_) bytes += matrix->bytes();
   for (const auto& relative : relatives_) bytes += relative->bytes();
-  bytes += from_.bytes() + into_.bytes();
   return bytes;
 }
 

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
-#include "muslin/potential/block_matrix.hpp"
 #include "muslin/potential/couplings.hpp"
 #include "muslin/potential/relative_stiffness.hpp"
+#include "muslin/potential/symmetric_matrix.hpp"
 
 namespace muslin {
 
@@ -36,7 +36,7 @@ class Linearization {
   Couplings& couplings(const std::shared_ptr<const CouplingPattern>& pattern, std::size_t first);
   /// The blocks of this pattern on vertices first, first + 1, …; zero when first asked for. What is added
   /// must be symmetric and positive semidefinite.
-  BlockMatrix& matrix(const std::shared_ptr<const BlockPattern>& pattern, std::size_t first);
+  SymmetricMatrix& matrix(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first);
   /// A relative stiffness between `count` vertices first, first + 1, …, without terms yet; scaled already.
   RelativeStiffness& relative_stiffness(std::size_t first, std::size_t count);
   /// H += value on vertex v; scaled already.
@@ -58,21 +58,17 @@ class Linearization {
 
   /// Couplings of all vertices in ascending order, empty ones for vertices that have none.
   std::span<const Couplings* const> sets() const { return sets_; }
-  std::span<const BlockMatrix* const> matrices() const { return matrices_; }
+  std::span<const SymmetricMatrix* const> matrices() const { return matrices_; }
   const float* identity() const { return identity_.data(); }
   const std::uint8_t* fixed() const { return fixed_.data(); }
 
   /// Whether K is not zero.
-  bool has_rest() const { return !matrices_.empty() || has_loose(); }
-  /// Whether the loose part of K is not zero.
-  bool has_loose() const { return !generals_.empty() || relative_count_ > 0; }
+  bool has_rest() const { return !matrices_.empty() || !generals_.empty() || relative_count_ > 0; }
   /// Positive semidefinite diagonal blocks of K: xx, xy, xz of `upper` and yy, yz, zz of `lower`, #V by 3.
   const FloatVectors& rest_upper() const { return upper_; }
   const FloatVectors& rest_lower() const { return lower_; }
-  /// y += K p, #V by 3; returns pᵀK p.
-  double add_rest_product(Floats p, Floats y);
-  /// The same with the loose part of K alone, and vectors as three floats and a zero each.
-  double add_loose_product(const Float4* p, Float4* y);
+  /// y += K p, #V by 3 and a zero each; returns pᵀK p.
+  double add_rest_product(const Float4* p, Float4* y);
 
   std::size_t bytes() const;
 
@@ -91,14 +87,13 @@ class Linearization {
   Buffer<float> identity_, workspace_;
   std::vector<std::unique_ptr<Couplings>> storage_;  // reused from step to step
   std::vector<const Couplings*> sets_;               // of this x
-  std::vector<std::unique_ptr<BlockMatrix>> matrix_storage_;
-  std::vector<const BlockMatrix*> matrices_;
+  std::vector<std::unique_ptr<SymmetricMatrix>> matrix_storage_;
+  std::vector<const SymmetricMatrix*> matrices_;
   std::vector<General> generals_;
   std::vector<std::unique_ptr<RelativeStiffness>> relatives_;  // reused from step to step
   std::size_t relative_count_ = 0;                             // of this x
   FloatVectors upper_, lower_;
-  std::vector<Vec3> p_, y_;     // for products in double
-  Buffer<Float4> from_, into_;  // for those of relative stiffnesses
+  std::vector<Vec3> p_, y_;  // for products in double
   std::vector<Mat3> blocks_;
 };
 

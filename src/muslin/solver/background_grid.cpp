@@ -208,7 +208,7 @@ GridMatrix::GridMatrix(const BackgroundGrid& grid, std::vector<std::pair<int, in
   for (std::size_t c = 0; c < cells.size(); ++c) first_[c + 1] += first_[c];
 
   mirror_.resize(pattern_->block_count());
-  for (std::size_t row = 0; row < pattern_->vertex_count(); ++row) {
+  for (std::size_t row = 0; row < pattern_->node_count(); ++row) {
     for (int k = pattern_->first()[row]; k < pattern_->first()[row + 1]; ++k)
       mirror_[at(k)] = pattern_->find(pattern_->columns()[at(k)], static_cast<int>(row));
   }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
-#include "muslin/potential/block_matrix.hpp"
+#include "muslin/solver/block_matrix.hpp"
 
 namespace muslin {
 

@@ -45,14 +45,12 @@ void for_each_coupling(const CouplingPattern& pattern, const Body& body) {
         body(l + (l < block.cut ? block.first : block.second), block.group * lanes + l);
   }
 }
-/// body(row, column) for the blocks below the diagonal.
+/// body(row, column) for the blocks beside the diagonal.
 template <class Body>
-void for_each_pair(const BlockPattern& pattern, const Body& body) {
-  for (std::size_t row = 0; row < pattern.vertex_count(); ++row) {
-    for (int k = pattern.first()[row]; k < pattern.first()[row + 1]; ++k)
-      if (pattern.columns()[at(k)] < static_cast<int>(row))
-        body(static_cast<int>(row), pattern.columns()[at(k)]);
-  }
+void for_each_pair(const SymmetricPattern& pattern, const Body& body) {
+  for (std::size_t row = 0; row < pattern.vertex_count(); ++row)
+    for (int k = pattern.first()[row] + 1; k < pattern.first()[row + 1]; ++k)
+      body(static_cast<int>(row), pattern.columns()[at(k)]);
 }
 
 /// to += scale w_k w_l for k ≤ l
@@ -80,7 +78,7 @@ CoarseSpace::CoarseSpace(const Linearization& h, ConstVectors rest_positions)
     }
     positions += set->pattern().position_count();
   }
-  for (const BlockMatrix* matrix : h.matrices())
+  for (const SymmetricMatrix* matrix : h.matrices())
     matrices_.push_back({matrix->shared_pattern(), matrix->first()});
 
   // Bodies and the lengths of their edges.
@@ -253,13 +251,13 @@ void CoarseSpace::add_masses(const Linearization& h, std::size_t part, Sums& sum
   }
 }
 
-/// The blocks below the diagonal: the others are their transposes or in the diagonal of all.
-void CoarseSpace::add_matrix(const BlockMatrix& matrix, std::size_t part, Float4* half) const {
-  const BlockPattern& pattern = matrix.pattern();
+/// The blocks beside the diagonal; that is in the diagonal of all.
+void CoarseSpace::add_matrix(const SymmetricMatrix& matrix, std::size_t part, Float4* half) const {
+  const SymmetricPattern& pattern = matrix.pattern();
   const auto [begin, end] = share(part, pattern.vertex_count());
   for (std::size_t row = begin; row < end; ++row) {
     RowOfBlocks sums(grid_, grid_matrix_, point(at(position_[matrix.first() + row])), half);
-    for (int k = pattern.first()[row]; k < pattern.diagonal()[row]; ++k) {
+    for (int k = pattern.first()[row] + 1; k < pattern.first()[row + 1]; ++k) {
       const auto column = at(pattern.columns()[at(k)]);
       sums.add(point(at(position_[matrix.first() + column])), matrix.block(k));
     }
@@ -291,7 +289,7 @@ void CoarseSpace::assemble(const Linearization& h) {
     sums.couplings.assign(bundles_.size(), Block3{});
     for (std::size_t s = 0; s < sets_.size(); ++s) add_couplings(*h.sets()[s], sets_[s], part, sums);
     add_masses(h, part, sums);
-    for (const BlockMatrix* matrix : h.matrices()) add_matrix(*matrix, part, sums.half.data());
+    for (const SymmetricMatrix* matrix : h.matrices()) add_matrix(*matrix, part, sums.half.data());
     if (h.has_rest()) add_rest_diagonal(h, part, sums.half.data());
   });
   Sums& all = sums_[0];
@@ -312,7 +310,7 @@ void CoarseSpace::assemble(const Linearization& h) {
   constexpr Block3 identity = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
   for (std::size_t c = 0; c < all.masses.size(); ++c)
     add_weighted(grid_, grid_matrix_, static_cast<int>(c), all.masses[c].data(), identity, all.half.data());
-  multilevel_->matrix().reset(grid_matrix_.pattern(), 0);
+  multilevel_->matrix().reset(*grid_matrix_.pattern());
   grid_matrix_.finish(all.half.data(), multilevel_->matrix());
   multilevel_->prepare();
 }

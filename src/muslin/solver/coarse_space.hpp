@@ -42,7 +42,7 @@ class CoarseSpace {
     std::size_t first_block = 0;
   };
   struct Matrix {
-    std::shared_ptr<const BlockPattern> pattern;
+    std::shared_ptr<const SymmetricPattern> pattern;
     std::size_t first = 0;
   };
   /// Of a loop over `count` items, what a part does: its items from `begin` to `end`.
@@ -72,7 +72,7 @@ class CoarseSpace {
   void bundle();
   void add_couplings(const Couplings& couplings, const Set& set, std::size_t part, Sums& sums) const;
   void add_masses(const Linearization& h, std::size_t part, Sums& sums) const;
-  void add_matrix(const BlockMatrix& matrix, std::size_t part, Float4* half) const;
+  void add_matrix(const SymmetricMatrix& matrix, std::size_t part, Float4* half) const;
   void add_rest_diagonal(const Linearization& h, std::size_t part, Float4* half) const;
 
   std::vector<Set> sets_;

@@ -126,7 +126,7 @@ void Multilevel::make_coarser_matrix(std::size_t l) {
     for (int k = level.pattern->first()[row]; k < diagonal; ++k)
       sums.add(level.grid.point(at(level.pattern->columns()[at(k)])), level.matrix.block(k));
   }
-  levels_[l + 1].matrix.reset(level.coarser.pattern(), 0);
+  levels_[l + 1].matrix.reset(*level.coarser.pattern());
   level.coarser.finish(level.half.data(), levels_[l + 1].matrix);
 }
 

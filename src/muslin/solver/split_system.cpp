@@ -232,18 +232,18 @@ void SplitSystem::find_product() {
 double SplitSystem::add_rest_product() {
   t_.resize(h_->size());
   product_.resize(h_->size());
-  const Floats from = flat_.data(), t = t_.data(), y = product_.data();
-  for_each_vertex(t.x, [&](std::int64_t v, std::size_t i) {
+  const Floats from = flat_.data();
+  Float4 *const t = t_.data(), *const y = product_.data();
+  for_each_vertex(t, [&](std::int64_t v, std::size_t i) {
     if (v < 0) return;
-    t.x[v] = from.x[i], t.y[v] = from.y[i], t.z[v] = from.z[i];
-    y.x[v] = y.y[v] = y.z[v] = 0;
+    t[v] = Float4{from.x[i], from.y[i], from.z[i], 0};
+    y[v] = Float4{0, 0, 0, 0};
   });
   const double curvature = h_->add_rest_product(t, y);
-  for_each_vertex(y.x, [&](std::int64_t v, std::size_t i) {
+  for_each_vertex(y, [&](std::int64_t v, std::size_t i) {
+    const Float4 value = v < 0 ? Float4{0, 0, 0, 0} : y[v];
     float* const to = further_ + place(i);
-    to[0] = v < 0 ? 0 : y.x[v];
-    to[lanes] = v < 0 ? 0 : y.y[v];
-    to[2 * lanes] = v < 0 ? 0 : y.z[v];
+    to[0] = value[0], to[lanes] = value[1], to[2 * lanes] = value[2];
   });
   return curvature;
 }

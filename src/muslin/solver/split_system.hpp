@@ -84,8 +84,8 @@ class SplitSystem {
   /// Vectors by group, in memory of h_: c = Gᵀ t + G⁻¹ ((A − D) t − u), `further_` = K t.
   float *r_ = nullptr, *p_ = nullptr, *x_ = nullptr, *c_ = nullptr, *further_ = nullptr;
   FloatVectors flat_;
-  FloatVectors other_;        // beside flat_, for corrections
-  FloatVectors t_, product_;  // t and K t by vertex
+  FloatVectors other_;          // beside flat_, for corrections
+  Buffer<Float4> t_, product_;  // t and K t by vertex
 };
 
 }  // namespace muslin

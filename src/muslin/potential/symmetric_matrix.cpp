@@ -1,0 +1,127 @@
+#include "muslin/potential/symmetric_matrix.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+#include "muslin/core/parallel.hpp"
+#include "muslin/core/vector_code.hpp"
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"  // how vectors are returned does not matter where all is inlined
+#endif
+
+namespace muslin {
+namespace {
+
+constexpr std::size_t grain = 256;  // rows
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+using Float8 = float __attribute__((vector_size(32)));
+
+/// The first two columns of a block.
+MUSLIN_INLINE Float8 columns01(const Float4* block) {
+  Float8 both;
+  std::memcpy(&both, block, sizeof(both));
+  return both;
+}
+
+MUSLIN_VECTOR_CODE double add_rows(const SymmetricPattern& pattern, const Float4* blocks, const Float4* p,
+                                   Float4* y, std::size_t begin, std::size_t end) {
+  const int *const first = pattern.first().data(), *const columns = pattern.columns().data(),
+                   *const first_mirrored = pattern.first_mirrored().data();
+  const SymmetricPattern::Mirrored* const mirrored = pattern.mirrored().data();
+  double sum = 0;
+  for (std::size_t v = begin; v < end; ++v) {
+    // Of the first two columns side by side and of the third; of blocks, and of transposed ones by component.
+    Float8 sum01 = {}, mirrored01 = {};
+    Float4 sum2 = {}, mirrored2 = {};
+    for (int k = first[v]; k < first[v + 1]; ++k) {
+      const Float4 *const c = blocks + 3 * at(k), from = p[columns[k]];
+      sum01 += columns01(c) * __builtin_shufflevector(from, from, 0, 0, 0, 0, 1, 1, 1, 1);
+      sum2 += c[2] * from[2];
+    }
+    for (int m = first_mirrored[v]; m < first_mirrored[v + 1]; ++m) {
+      const Float4 *const c = blocks + 3 * at(mirrored[m].block), from = p[mirrored[m].row];
+      mirrored01 += columns01(c) * __builtin_shufflevector(from, from, 0, 1, 2, 3, 0, 1, 2, 3);
+      mirrored2 += c[2] * from;
+    }
+    const Float8& t = mirrored01;
+    const Float4 row =
+        __builtin_shufflevector(sum01, sum01, 0, 1, 2, 3) +
+        __builtin_shufflevector(sum01, sum01, 4, 5, 6, 7) + sum2 +
+        Float4{t[0] + t[1] + t[2], t[4] + t[5] + t[6], mirrored2[0] + mirrored2[1] + mirrored2[2], 0};
+    y[v] += row;
+    const Float4 work = p[v] * row;
+    sum += static_cast<double>(work[0]) + static_cast<double>(work[1]) + static_cast<double>(work[2]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+SymmetricPattern::SymmetricPattern(std::vector<std::pair<int, int>> pairs, std::size_t vertex_count) {
+  for (auto& [row, column] : pairs)
+    if (row > column) std::swap(row, column);
+  for (std::size_t v = 0; v < vertex_count; ++v) pairs.emplace_back(static_cast<int>(v), static_cast<int>(v));
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  first_.assign(vertex_count + 1, 0);
+  first_mirrored_ = first_;
+  columns_.reserve(pairs.size());
+  for (const auto& [row, column] : pairs) {
+    ++first_[at(row) + 1];
+    if (row != column) ++first_mirrored_[at(column) + 1];
+    columns_.push_back(column);
+  }
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    first_[v + 1] += first_[v];
+    first_mirrored_[v + 1] += first_mirrored_[v];
+  }
+  mirrored_.resize(at(first_mirrored_.back()));
+  std::vector<int> next = first_mirrored_;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto& [row, column] = pairs[k];
+    if (row != column) mirrored_[at(next[at(column)]++)] = {static_cast<int>(k), row};
+  }
+}
+
+int SymmetricPattern::find(int row, int column) const {
+  const auto begin = columns_.begin() + first_[at(row)], end = columns_.begin() + first_[at(row) + 1];
+  const auto found = std::lower_bound(begin, end, column);
+  assert(found != end && *found == column);
+  return static_cast<int>(found - columns_.begin());
+}
+
+void SymmetricMatrix::reset(std::shared_ptr<const SymmetricPattern> pattern, std::size_t first) {
+  pattern_ = std::move(pattern);
+  first_ = first;
+  columns_.resize(3 * pattern_->block_count());
+  constexpr std::size_t columns_per_piece = 1 << 16;
+  parallel_for(columns_.size(), columns_per_piece, [&](std::size_t begin, std::size_t end) {
+    std::fill(columns_.data() + begin, columns_.data() + end, Float4{0, 0, 0, 0});
+  });
+}
+
+double SymmetricMatrix::add_product(const Float4* p, Float4* y) const {
+  return parallel_sum(pattern_->vertex_count(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+    return add_rows(*pattern_, columns_.data(), p, y, begin, end);
+  });
+}
+
+void SymmetricMatrix::add_diagonal(Floats upper, Floats lower) const {
+  parallel_for(pattern_->vertex_count(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const Float4* c = block(pattern_->first()[v]);
+      upper.x[v] += c[0][0];
+      upper.y[v] += c[1][0];
+      upper.z[v] += c[2][0];
+      lower.x[v] += c[1][1];
+      lower.y[v] += c[2][1];
+      lower.z[v] += c[2][2];
+    }
+  });
+}
+
+}  // namespace muslin
