@@ -61,21 +61,38 @@ bool contains_once(const std::vector<Pair>& sorted, const Pair& pair) {
   return end - begin == 1;
 }
 
-FeaturePairs sorted_pairs(const Scene& scene, ConstVectors lower, ConstVectors upper, double reach,
-                          std::span<const std::uint8_t> moved = {}) {
-  PairSearch search(scene.surface, scene.positions);
-  FeaturePairs found;
-  search.find(lower, upper, reach, found, moved);
+/// Boxes around ways, or that go along them.
+MovingBoxes boxes_along(ConstVectors from, ConstVectors to, bool moving) {
+  MovingBoxes boxes(from.size());
+  for (std::size_t p = 0; p < from.size(); ++p) {
+    if (moving) {
+      boxes.move(p, from[p], to[p], 0);
+    } else {
+      boxes.stay(p, from[p], to[p], 0);
+    }
+  }
+  return boxes;
+}
+MovingBoxes boxes_at(ConstVectors x) { return boxes_along(x, x, false); }
+
+FeaturePairs sorted(FeaturePairs found) {
   std::sort(found.vertex_triangle.begin(), found.vertex_triangle.end());
   std::sort(found.edge_edge.begin(), found.edge_edge.end());
   return found;
+}
+
+FeaturePairs sorted_pairs(const Scene& scene, const MovingBoxes& boxes, double reach) {
+  PairSearch search(scene.surface, scene.positions);
+  FeaturePairs found;
+  search.find(boxes, reach, found);
+  return sorted(std::move(found));
 }
 
 TEST(PairSearch, FindsEveryPairWithinReachOnce) {
   const Scene scene;
   const ContactSurface& surface = *scene.surface;
   const double reach = 0.06;
-  const FeaturePairs found = sorted_pairs(scene, scene.positions, scene.positions, reach);
+  const FeaturePairs found = sorted_pairs(scene, boxes_at(scene.positions), reach);
   EXPECT_EQ(std::adjacent_find(found.vertex_triangle.begin(), found.vertex_triangle.end()),
             found.vertex_triangle.end());
   EXPECT_EQ(std::adjacent_find(found.edge_edge.begin(), found.edge_edge.end()), found.edge_edge.end());
@@ -114,42 +131,66 @@ TEST(PairSearch, FindsEveryPairWithinReachOnce) {
 }
 
 TEST(PairSearch, CoversMotion) {
-  // Boxes from before to after: whatever is close at any time between is found.
+  // Whatever is close at any time on the way is found, in boxes around ways and in boxes that go along them.
   const Scene scene;
-  std::vector<Vec3> after = scene.positions, lower, upper;
+  std::vector<Vec3> after = scene.positions;
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> noise(-0.2, 0.2);
-  for (std::size_t p = 0; p < after.size(); ++p) {
-    after[p] += Vec3(noise(random), noise(random), noise(random));
-    lower.push_back(after[p].cwiseMin(scene.positions[p]));
-    upper.push_back(after[p].cwiseMax(scene.positions[p]));
-  }
+  for (Vec3& p : after) p += Vec3(noise(random), noise(random), noise(random));
   const double reach = 0.01;
-  const FeaturePairs swept = sorted_pairs(scene, lower, upper, reach);
-  Scene between = scene;
-  for (const double t : {0.0, 0.3, 0.7, 1.0}) {
-    for (std::size_t p = 0; p < after.size(); ++p)
-      between.positions[p] = (1 - t) * scene.positions[p] + t * after[p];
-    const FeaturePairs now = sorted_pairs(between, between.positions, between.positions, reach);
-    for (const VertexTriangle& pair : now.vertex_triangle) {
-      if (closest_points(PairKind::vertex_triangle, between.points(pair)).distance() > reach) continue;
-      EXPECT_TRUE(contains_once(swept.vertex_triangle, pair));
+  std::size_t most = 0;
+  for (const bool moving : {false, true}) {
+    const FeaturePairs swept = sorted_pairs(scene, boxes_along(scene.positions, after, moving), reach);
+    if (moving) {
+      EXPECT_LT(swept.edge_edge.size(), most);
     }
-    for (const EdgeEdge& pair : now.edge_edge) {
-      if (closest_points(PairKind::edge_edge, between.points(pair)).distance() > reach) continue;
-      EXPECT_TRUE(contains_once(swept.edge_edge, pair));
+    most = swept.edge_edge.size();
+    Scene between = scene;
+    for (const double t : {0.0, 0.3, 0.7, 1.0}) {
+      for (std::size_t p = 0; p < after.size(); ++p)
+        between.positions[p] = (1 - t) * scene.positions[p] + t * after[p];
+      const FeaturePairs now = sorted_pairs(between, boxes_at(between.positions), reach);
+      for (const VertexTriangle& pair : now.vertex_triangle) {
+        if (closest_points(PairKind::vertex_triangle, between.points(pair)).distance() > reach) continue;
+        EXPECT_TRUE(contains_once(swept.vertex_triangle, pair));
+      }
+      for (const EdgeEdge& pair : now.edge_edge) {
+        if (closest_points(PairKind::edge_edge, between.points(pair)).distance() > reach) continue;
+        EXPECT_TRUE(contains_once(swept.edge_edge, pair));
+      }
     }
   }
+}
+
+TEST(PairSearch, FindsNoMoreWhereAllMoveAlike) {
+  // Slanted cloth that goes ten edges far as a whole is as far from itself as cloth at rest.
+  const Scene scene(true, 0);
+  std::vector<Vec3> from = scene.positions, after = from;
+  for (Vec3& p : from) p += Vec3(0, p.x() + p.z(), 0);
+  for (std::size_t p = 0; p < from.size(); ++p) after[p] = from[p] + Vec3(0.6, 0.7, 0.5);
+  const std::size_t still = sorted_pairs(scene, boxes_at(from), 0.01).edge_edge.size(),
+                    along = sorted_pairs(scene, boxes_along(from, after, true), 0.01).edge_edge.size(),
+                    around = sorted_pairs(scene, boxes_along(from, after, false), 0.01).edge_edge.size();
+  EXPECT_LE(along, still + still / 10);
+  EXPECT_GT(around, 5 * still);
 }
 
 TEST(PairSearch, FindsThePairsOfSomePointsAlone) {
   const Scene scene;
   const double reach = 0.06;
   std::vector<std::uint8_t> moved(scene.positions.size(), 0);
-  for (const std::size_t p : {3, 40, 41, 100}) moved[p] = 1;
+  for (const std::size_t p : {3, 40, 41, 100}) moved.at(p) = 1;
   moved.back() = 1;
-  const FeaturePairs all = sorted_pairs(scene, scene.positions, scene.positions, reach),
-                     some = sorted_pairs(scene, scene.positions, scene.positions, reach, moved);
+  // Those that moved are found where they are now, the others where they were.
+  std::vector<Vec3> before = scene.positions;
+  for (std::size_t p = 0; p < moved.size(); ++p)
+    if (moved[p] != 0) before[p] += Vec3(0.3, 0.1, -0.2);
+  PairSearch search(scene.surface, scene.positions);
+  FeaturePairs some;
+  search.find(boxes_at(before), reach, some);
+  search.find(boxes_at(scene.positions), reach, some, moved);
+  some = sorted(std::move(some));
+  const FeaturePairs all = sorted_pairs(scene, boxes_at(scene.positions), reach);
   const auto has_moved = [&](int p) { return moved[static_cast<std::size_t>(p)] != 0; };
   FeaturePairs expected;
   for (const VertexTriangle& pair : all.vertex_triangle) {
@@ -171,7 +212,7 @@ TEST(PairSearch, FindsThePairsOfSomePointsAlone) {
 
 TEST(PairSearch, LeavesOutSelfContactWhenToldTo) {
   const Scene scene(false);
-  const FeaturePairs found = sorted_pairs(scene, scene.positions, scene.positions, 0.03);
+  const FeaturePairs found = sorted_pairs(scene, boxes_at(scene.positions), 0.03);
   EXPECT_FALSE(found.vertex_triangle.empty());
   for (const VertexTriangle& pair : found.vertex_triangle) {
     const int other = scene.surface->triangles()[static_cast<std::size_t>(pair.triangle)][0];
@@ -181,7 +222,7 @@ TEST(PairSearch, LeavesOutSelfContactWhenToldTo) {
 
 TEST(PairSearch, FindsLittleInFlatCloth) {
   const Scene flat(true, 0);
-  const FeaturePairs found = sorted_pairs(flat, flat.positions, flat.positions, 0.002);
+  const FeaturePairs found = sorted_pairs(flat, boxes_at(flat.positions), 0.002);
   EXPECT_LT(found.edge_edge.size(), 8 * flat.surface->edges().size());
 }
 
@@ -189,9 +230,9 @@ TEST(PairSearch, KeepsItsOrderForAnyThreadCount) {
   const Scene scene;
   PairSearch search(scene.surface, scene.positions);
   FeaturePairs many, one;
-  search.find(scene.positions, scene.positions, 0.05, many);
+  search.find(boxes_at(scene.positions), 0.05, many);
   set_thread_count(1);
-  search.find(scene.positions, scene.positions, 0.05, one);
+  search.find(boxes_at(scene.positions), 0.05, one);
   set_thread_count(0);
   EXPECT_EQ(many.vertex_triangle, one.vertex_triangle);
   EXPECT_EQ(many.edge_edge, one.edge_edge);
@@ -263,6 +304,47 @@ TEST(ContactCandidates, AreCompleteAfterSomePointsWereFoundAnew) {
     EXPECT_TRUE(std::binary_search(keys.begin(), keys.end(), pair.key()));
   }
   EXPECT_GT(close, 50);
+}
+
+TEST(ContactCandidates, AreCompleteWhileAllPointsGoAtTheSamePace) {
+  // Far ways, some of which end short of where they were to go and are found anew: whatever is in range on
+  // the way is a candidate.
+  const Scene scene;
+  const double range = 0.02, margin = 0.01;
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> noise(-0.15, 0.15), little(-margin, margin);
+  std::vector<Vec3> there = scene.positions, stopped;
+  for (Vec3& p : there) p += Vec3(noise(random), noise(random) + 0.2, noise(random));
+  stopped = there;
+  std::vector<std::uint8_t> moved(there.size(), 0);
+  for (std::size_t p = 0; p < there.size(); p += 7) {
+    stopped[p] = scene.positions[p] + 0.3 * (there[p] - scene.positions[p]);
+    moved[p] = 1;
+  }
+  ContactCandidates candidates(scene.surface, scene.positions, range),
+      fresh(scene.surface, scene.positions, range);
+  candidates.update(scene.positions, there, margin);
+  EXPECT_TRUE(candidates.boxes().moving());
+  const std::size_t unstopped = candidates.pairs().size();
+  candidates.renew(moved, scene.positions, stopped, margin);
+  EXPECT_GT(candidates.pairs().size(), unstopped);
+  std::vector<std::uint64_t> keys;
+  for (const ContactPair& pair : candidates.pairs()) keys.push_back(pair.key());
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+  int close = 0;
+  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    std::vector<Vec3> now = scene.positions;
+    for (std::size_t p = 0; p < now.size(); ++p)
+      for (int k = 0; k < 3; ++k) now[p][k] += t * (stopped[p][k] - scene.positions[p][k]) + little(random);
+    fresh.update(now, now, 0);
+    for (const ContactPair& pair : fresh.pairs()) {
+      if (pair_geometry(*scene.surface, pair, now).distance > pair.thickness + pair.range) continue;
+      ++close;
+      EXPECT_TRUE(std::binary_search(keys.begin(), keys.end(), pair.key()));
+    }
+  }
+  EXPECT_GT(close, 250);
 }
 
 TEST(ContactSurface, OwnsEachFeatureOnce) {

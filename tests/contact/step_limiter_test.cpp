@@ -50,12 +50,14 @@ Scene cloth_scene(int n) {
   return scene;
 }
 
-/// Takes a limited step towards q + dq with pairs for all of the way, as a solver would.
+/// Takes a limited step towards q + dq with pairs for wherever points may stop on the way.
 LimitReport limited_step(Scene& scene, ContactCandidates& candidates, const StepLimiter& limiter,
                          std::vector<Vec3> dq, double margin) {
   std::vector<Vec3> to = scene.q;
   for (std::size_t v = 0; v < to.size(); ++v) to[v] += dq[v];
-  candidates.update(scene.points(scene.q), scene.points(to), margin);
+  const std::vector<std::uint8_t> all(scene.surface->point_count(), 1);
+  candidates.update(scene.points(scene.q), scene.points(scene.q), margin);
+  candidates.renew(all, scene.points(scene.q), scene.points(to), margin);
   PairDistances distances = test::distances_at(candidates, scene.points(scene.q));
   const LimitReport report = limiter.limit(distances, dq);
   for (std::size_t v = 0; v < to.size(); ++v) scene.q[v] += dq[v];

@@ -35,6 +35,18 @@ std::array<int, 4> points_of(const ContactSurface& surface, PairKind kind, int f
   }
 }
 
+/// Mean length at rest of the edges of bodies that are not fixed; infinite where there are none.
+double mean_edge(const ContactSurface& surface, ConstVectors rest) {
+  double sum = 0;
+  int count = 0;
+  for (const ContactSurface::Edge& e : surface.edges()) {
+    if (surface.body_at(e[0]).fixed) continue;
+    sum += (rest[static_cast<std::size_t>(e[0])] - rest[static_cast<std::size_t>(e[1])]).norm();
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::infinity();
+}
+
 std::vector<int> points_of_bodies(const ContactSurface& surface) {
   std::vector<int> sizes(surface.bodies().size(), 0);
   for (int p = 0; p < static_cast<int>(surface.point_count()); ++p)
@@ -67,6 +79,7 @@ ContactCandidates::ContactCandidates(std::shared_ptr<const ContactSurface> surfa
     : surface_(std::move(surface)), contact_distance_(contact_distance), search_(surface_, rest) {
   if (!(contact_distance > 0))
     throw Error(ErrorKind::usage, "the contact distance is not positive", "give a length in metres");
+  edge_ = mean_edge(*surface_, rest);
   // What is close at rest within a body; boxes are widened by the radii already.
   const std::vector<int> sizes = points_of_bodies(*surface_);
   double thickest = 0;
@@ -74,7 +87,9 @@ ContactCandidates::ContactCandidates(std::shared_ptr<const ContactSurface> surfa
     const ContactBody& b = surface_->bodies()[body];
     if (sizes[body] > 3 && b.self_contact && !b.fixed) thickest = std::max(thickest, 2 * b.radius);
   }
-  search_.find(rest, rest, std::max(thickest, contact_distance / rest_range), found_);
+  boxes_ = MovingBoxes(rest.size());
+  for (std::size_t p = 0; p < rest.size(); ++p) boxes_.stay(p, rest[p], rest[p], 0);
+  search_.find(boxes_, std::max(thickest, contact_distance / rest_range), found_);
   const auto note = [&](PairKind kind, int first, int second) {
     const std::array<int, 4> points = points_of(*surface_, kind, first, second);
     if (surface_->body_of(points[0]) != surface_->body_of(points[3])) return;
@@ -156,13 +171,20 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
   if (begin.size() != points || end.size() != points)
     throw Error(ErrorKind::usage, "contact candidates need one position for each point", "give #P positions");
   found_at_.assign(begin.begin(), begin.end());
-  lower_.resize(points);
-  upper_.resize(points);
+  // Boxes around whole ways are compared faster, and as good while ways are short.
+  double farthest = 0;
+  for (std::size_t p = 0; p < points; ++p) farthest = std::max(farthest, (end[p] - begin[p]).squaredNorm());
+  boxes_.restart();
+  const bool slow = farthest <= edge_ * edge_;
   for (std::size_t p = 0; p < points; ++p) {
-    lower_[p] = begin[p].cwiseMin(end[p]).array() - margin;
-    upper_[p] = begin[p].cwiseMax(end[p]).array() + margin;
+    if (slow) {
+      boxes_.stay(p, begin[p], end[p], margin);
+    } else {
+      boxes_.move(p, begin[p], end[p], margin);
+    }
   }
-  search_.find(lower_, upper_, contact_distance_, found_);
+  search_.find(boxes_, contact_distance_, found_);
+  culling_.set_points(*surface_, found_at_, boxes_);
   pairs_.clear();
   least_distances_.clear();
   add_near_pairs();
@@ -171,12 +193,10 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
 void ContactCandidates::renew(std::span<const std::uint8_t> moved, ConstVectors begin, ConstVectors end,
                               double margin) {
   const auto has_moved = [&](int p) { return moved[static_cast<std::size_t>(p)] != 0; };
-  for (std::size_t p = 0; p < lower_.size(); ++p) {
-    if (moved[p] == 0) continue;
-    lower_[p] = begin[p].cwiseMin(end[p]).array() - margin;
-    upper_[p] = begin[p].cwiseMax(end[p]).array() + margin;
-  }
-  search_.find(lower_, upper_, contact_distance_, found_, moved);
+  for (std::size_t p = 0; p < moved.size(); ++p)
+    if (moved[p] != 0) boxes_.stay(p, begin[p], end[p], margin);
+  search_.find(boxes_, contact_distance_, found_, moved);
+  culling_.set_boxes(moved, boxes_);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const std::array<int, 4>& p = pairs_[i].points;
@@ -193,7 +213,6 @@ void ContactCandidates::renew(std::span<const std::uint8_t> moved, ConstVectors 
 
 /// Of what the search has found, and of planes.
 void ContactCandidates::add_near_pairs() {
-  culling_.set_points(*surface_, found_at_, lower_, upper_);
   const auto blocks = [](std::size_t count) { return (count + grain - 1) / grain; };
   const std::size_t vertex_triangle = blocks(found_.vertex_triangle.size());
   std::vector<Near> parts(vertex_triangle + blocks(found_.edge_edge.size()));
@@ -222,12 +241,13 @@ void ContactCandidates::add_near_plane(int plane) {
   if (half_space.turns()) return add_near_turning_plane(plane);
   const auto carrier = static_cast<std::size_t>(half_space.point);
   const Vec3 &n = half_space.normal, extent = n.cwiseAbs();
-  const double top =
-      n.dot(lower_[carrier] + upper_[carrier]) / 2 + extent.dot(upper_[carrier] - lower_[carrier]) / 2;
+  const PointBox of_plane = boxes_.around(carrier);
+  const double top = n.dot(of_plane.middle()) + extent.dot(of_plane.half());
   const double radius = surface_->radius_of(half_space.point) + contact_distance_;
-  for (std::size_t p = 0; p < lower_.size(); ++p) {
+  for (std::size_t p = 0; p < boxes_.size(); ++p) {
     const int point = static_cast<int>(p);
-    const double bottom = n.dot(lower_[p] + upper_[p]) / 2 - extent.dot(upper_[p] - lower_[p]) / 2;
+    const PointBox box = boxes_.around(p);
+    const double bottom = n.dot(box.middle()) - extent.dot(box.half());
     if (bottom - top > radius + surface_->radius_of(point) || p == carrier) continue;
     if (surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point)))
       pairs_.push_back(make_pair(PairKind::point_plane, point, plane));
@@ -238,20 +258,14 @@ void ContactCandidates::add_near_plane(int plane) {
 /// |δN| = 2r (|b − a| + |c − a|) + 4r², and so n by no more than 2 |δN| / |N|.
 void ContactCandidates::add_near_turning_plane(int plane) {
   const ContactPlane& half_space = surface_->planes()[static_cast<std::size_t>(plane)];
-  const auto middle = [&](int point) {
-    const auto p = static_cast<std::size_t>(point);
-    return Vec3((lower_[p] + upper_[p]) / 2);
-  };
-  const auto half = [&](int point) {
-    const auto p = static_cast<std::size_t>(point);
-    return (upper_[p] - lower_[p]).norm() / 2;
-  };
+  const auto middle = [&](int point) { return boxes_.around(static_cast<std::size_t>(point)).middle(); };
+  const auto half = [&](int point) { return boxes_.around(static_cast<std::size_t>(point)).half().norm(); };
   const Vec3 a = middle(half_space.point), u = middle(half_space.span[0]) - a,
              v = middle(half_space.span[1]) - a, n = u.cross(v);
   const double r = std::max({half(half_space.point), half(half_space.span[0]), half(half_space.span[1])});
   const double turn = 2 * (2 * r * (u.norm() + v.norm()) + 4 * r * r) / n.norm();
   const double radius = surface_->radius_of(half_space.point) + contact_distance_;
-  for (int point = 0; point < static_cast<int>(lower_.size()); ++point) {
+  for (int point = 0; point < static_cast<int>(boxes_.size()); ++point) {
     if (!surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point))) continue;
     const Vec3 away = middle(point) - a;
     const double reach = half(point) + r;

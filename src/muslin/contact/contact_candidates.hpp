@@ -54,11 +54,11 @@ class ContactCandidates {
   /// default all do.
   void leave_free(std::span<const std::array<int, 2>> triangles);
 
-  /// Finds the pairs that may come within range while every point stays in the box of its positions at
-  /// `begin` and `end` (#P by 3, [m]), widened by `margin` [m] on all sides.
+  /// Finds the pairs that may come within range while all points go straight from `begin` to `end` (#P by 3,
+  /// [m]) at the same pace, each give or take `margin` [m] along every axis.
   void update(ConstVectors begin, ConstVectors end, double margin);
-  /// The same for those points alone whose `moved` (#P) is not zero: the others stay in the boxes they have,
-  /// and pairs without a moved point are as they were.
+  /// The same for those points alone whose `moved` (#P) is not zero, which may be anywhere between, at any
+  /// time: the others stay in the boxes they have, and pairs without a moved point are as they were.
   void renew(std::span<const std::uint8_t> moved, ConstVectors begin, ConstVectors end, double margin);
 
   const ContactSurface& surface() const { return *surface_; }
@@ -69,9 +69,8 @@ class ContactCandidates {
   std::span<const float> least_distances() const { return least_distances_; }
   /// Where those distances are meant, #P by 3 [m]: the `begin` of the last update.
   ConstVectors found_at() const { return found_at_; }
-  /// The boxes in which the pairs are complete, #P by 3 [m].
-  ConstVectors lower() const { return lower_; }
-  ConstVectors upper() const { return upper_; }
+  /// The boxes in which the pairs are complete, #P: all points have to be in theirs at the same time.
+  const MovingBoxes& boxes() const { return boxes_; }
 
  private:
   void limit_by_rest(ContactPair& pair) const;
@@ -90,10 +89,12 @@ class ContactCandidates {
 
   std::shared_ptr<const ContactSurface> surface_;
   double contact_distance_;
+  double edge_ = 0;  // mean length of an edge [m]
   PairSearch search_;
   PairCulling culling_;
   FeaturePairs found_;
-  std::vector<Vec3> found_at_, lower_, upper_;
+  std::vector<Vec3> found_at_;
+  MovingBoxes boxes_;
   std::vector<ContactPair> pairs_;
   std::vector<float> least_distances_;
   struct RestDistance {

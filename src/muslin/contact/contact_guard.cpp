@@ -116,28 +116,47 @@ void ContactGuard::cover(ConstVectors q, ConstVectors d) {
   double push = 0;
   for (std::size_t v = 0; v < held_.size(); ++v)
     if (held_[v] != 0) push = std::max(push, d[v].norm());
-  push *= pushed_share;
+  reach_ = margin_ + pushed_share * push;
   model_->map->apply(q, x_);
   model_->map->apply(d, to_);
   for (std::size_t p = 0; p < x_.size(); ++p) to_[p] += x_[p];
-  if (memory_.begin.empty()) return find_candidates(x_, to_, margin_ + push);
+  if (memory_.begin.empty()) return find_candidates(x_, to_, reach_);
   outside_.resize(x_.size());
   std::size_t count = 0;
   for (std::size_t p = 0; p < x_.size(); ++p) {
-    const Vec3 &low = candidates_.lower()[p], &high = candidates_.upper()[p];
-    const bool inside = (x_[p].cwiseMin(to_[p]).array() - push >= low.array()).all() &&
-                        (x_[p].cwiseMax(to_[p]).array() + push <= high.array()).all();
+    const PointBox& box = candidates_.boxes().end(p);
+    const double pushed = reach_ - margin_;
+    const bool inside = (x_[p].cwiseMin(to_[p]).array() - pushed >= box.lower.array()).all() &&
+                        (x_[p].cwiseMax(to_[p]).array() + pushed <= box.upper.array()).all();
     outside_[p] = inside ? 0 : 1;
     count += outside_[p];
   }
   if (static_cast<double>(count) > renewed_share * static_cast<double>(x_.size()))
-    return find_candidates(x_, to_, margin_ + push);
-  if (count == 0) return;
+    return find_candidates(x_, to_, reach_);
+  if (count > 0) renew();
+}
+
+/// Finds the candidates of the points outside_ anew, which stay between x_ and to_.
+void ContactGuard::renew() {
   const Stopwatch watch(counts_.search_seconds);
   ++counts_.searches;
-  candidates_.renew(outside_, x_, to_, margin_ + push);
+  candidates_.renew(outside_, x_, to_, reach_);
   distances_.forget();
   renewed_ = true;
+}
+
+/// Whether a displacement that was limited takes points away from their boxes, which go where it led before:
+/// then their candidates are found anew.
+bool ContactGuard::renew_stopped(ConstVectors d) {
+  model_->map->apply(d, to_);
+  bool any = false;
+  for (std::size_t p = 0; p < x_.size(); ++p) {
+    to_[p] += x_[p];
+    outside_[p] = candidates_.boxes().end(p).contains(to_[p]) ? 0 : 1;
+    any |= outside_[p] != 0;
+  }
+  if (any) renew();
+  return any;
 }
 
 /// A run that is resumed finds candidates as memory_ tells.
@@ -176,12 +195,15 @@ void ContactGuard::shorten(Vectors d) const {
 void ContactGuard::limit(ConstVectors q, Vectors d) {
   shorten(d);
   cover(q, d);
-  const Stopwatch watch(counts_.limit_seconds);
-  measure(q);
-  const LimitReport report = limiter_.limit(distances_, d, held_);
   ++counts_.limits;
-  counts_.deflected += report.deflected;
-  counts_.shortened += report.shortened;
+  outside_.resize(x_.size());
+  do {
+    const Stopwatch watch(counts_.limit_seconds);
+    measure(q);
+    const LimitReport report = limiter_.limit(distances_, d, held_);
+    counts_.deflected += report.deflected;
+    counts_.shortened += report.shortened;
+  } while (renew_stopped(d));
 }
 
 void ContactGuard::advance(Vectors q, ConstVectors d) {

@@ -70,6 +70,8 @@ class ContactGuard : public StepGuard {
   /// As they were found last.
   void find_again();
   void forget_renewed();
+  void renew();
+  bool renew_stopped(ConstVectors d);
   void measure(ConstVectors q);
   void cover(ConstVectors q, ConstVectors d);
   void shorten(Vectors d) const;
@@ -79,6 +81,7 @@ class ContactGuard : public StepGuard {
   PairDistances distances_;
   StepLimiter limiter_;
   double margin_;        ///< by which boxes of candidates are wider than the motion [m]
+  double reach_ = 0;     ///< the same in the present displacement, with what is pushed in it [m]
   double edge_;          ///< mean length of an edge of what bends [m]
   double longest_;       ///< displacement that is limited in one piece [m]
   double longest_push_;  ///< the same of what pushes others along keyframes

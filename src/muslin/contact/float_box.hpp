@@ -23,10 +23,10 @@ struct alignas(32) FloatBox {
   }
 };
 
-inline bool overlap(const FloatBox& a, const FloatBox& b) {
-  const Int4 apart = (a.low > b.high) | (b.low > a.high);
-  const auto halves = std::bit_cast<Long2>(apart);
-  return (halves[0] | halves[1]) == 0;
+/// Whether any of the four is true.
+inline bool any(const Int4& mask) {
+  const auto halves = std::bit_cast<Long2>(mask);
+  return (halves[0] | halves[1]) != 0;
 }
 
 /// The floats just below or equal, and just above or equal: at most two steps away.

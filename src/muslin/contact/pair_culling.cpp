@@ -81,30 +81,50 @@ MUSLIN_INLINE Lanes3 edge_edge(const Lanes3* x) {
 
 }  // namespace
 
-void PairCulling::set_points(const ContactSurface& surface, ConstVectors at, ConstVectors lower,
-                             ConstVectors upper) {
+void PairCulling::set_points(const ContactSurface& surface, ConstVectors at, const MovingBoxes& boxes) {
   Box all;
-  for (std::size_t p = 0; p < lower.size(); ++p) {
+  for (std::size_t p = 0; p < at.size(); ++p) {
+    const PointBox around = boxes.around(p);
     all.extend(at[p]);
-    all.extend(lower[p]);
-    all.extend(upper[p]);
+    all.extend(around.lower);
+    all.extend(around.upper);
   }
-  const Vec3 centre = all.isEmpty() ? Vec3(Vec3::Zero()) : all.center();
-  // Some ten roundings of coordinates of this size.
-  rounding_ = all.isEmpty() ? 0 : static_cast<float>(2e-6 * all.sizes().maxCoeff());
+  centre_ = all.isEmpty() ? Vec3(Vec3::Zero()) : all.center();
+  // Some ten roundings of coordinates of twice this size.
+  rounding_ = all.isEmpty() ? 0 : static_cast<float>(4e-6 * all.sizes().maxCoeff());
+  moving_ = boxes.moving();
   points_.resize(at.size());
   parallel_for(at.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      const Vec3 a = at[p] - centre, middle = (lower[p] + upper[p]) / 2 - centre,
-                 half = (upper[p] - lower[p]) / 2;
-      for (int k = 0; k < 3; ++k) {
-        points_[p].at[k] = static_cast<float>(a[k]);
-        points_[p].middle[k] = static_cast<float>(middle[k]);
-        points_[p].half[k] = static_cast<float>(half[k]);
-      }
+      for (int k = 0; k < 3; ++k) points_[p].at[k] = static_cast<float>(at[p][k] - centre_[k]);
       points_[p].radius = static_cast<float>(surface.radius_of(static_cast<int>(p)));
+      set_box(p, boxes);
     }
   });
+}
+
+void PairCulling::set_boxes(std::span<const std::uint8_t> moved, const MovingBoxes& boxes) {
+  double farthest = 0;
+  for (std::size_t p = 0; p < moved.size(); ++p) {
+    if (moved[p] == 0) continue;
+    set_box(p, boxes);
+    const PointBox around = boxes.around(p);
+    farthest = std::max({farthest, (around.lower - centre_).cwiseAbs().maxCoeff(),
+                         (around.upper - centre_).cwiseAbs().maxCoeff()});
+  }
+  rounding_ = std::max(rounding_, static_cast<float>(4e-6 * farthest));
+}
+
+void PairCulling::set_box(std::size_t p, const MovingBoxes& boxes) {
+  Point& point = points_[p];
+  for (int e = 0; e < 2; ++e) {
+    const PointBox& box = boxes.at(e)[p];
+    const Vec3 middle = box.middle() - centre_, half = box.half();
+    for (int k = 0; k < 3; ++k) {
+      point.middle[e][k] = static_cast<float>(middle[k]);
+      point.half[e][k] = static_cast<float>(half[k]);
+    }
+  }
 }
 
 namespace {
@@ -125,16 +145,19 @@ MUSLIN_INLINE Float8 separation(const Lanes3& n, const Lanes3* x, const Float8* 
 }
 
 /// One group of eight pairs, whose point i is corners[i]: least distances, negative if they cannot come near.
-template <PairKind kind, class Point>
+template <PairKind kind, int ends, class Point>
 MUSLIN_INLINE Float8 near_lanes(const Point* const (*corners)[lane_count], float reach, float rounding) {
-  Lanes3 at[4], middle[4], half[4];
+  Lanes3 at[4], middle[ends][4], half[ends][4];
   Float8 radius[2];
   for (int i = 0; i < 4; ++i) {
     for (int l = 0; l < lane_count; ++l) {
       const Point& p = *corners[i][l];
       at[i].x[l] = p.at[0], at[i].y[l] = p.at[1], at[i].z[l] = p.at[2];
-      middle[i].x[l] = p.middle[0], middle[i].y[l] = p.middle[1], middle[i].z[l] = p.middle[2];
-      half[i].x[l] = p.half[0], half[i].y[l] = p.half[1], half[i].z[l] = p.half[2];
+      for (int e = 0; e < ends; ++e) {
+        Lanes3 &m = middle[e][i], &h = half[e][i];
+        m.x[l] = p.middle[e][0], m.y[l] = p.middle[e][1], m.z[l] = p.middle[e][2];
+        h.x[l] = p.half[e][0], h.y[l] = p.half[e][1], h.z[l] = p.half[e][2];
+      }
       if (i == 0) radius[0][l] = p.radius;
       if (i == 3) radius[1][l] = p.radius;
     }
@@ -147,10 +170,14 @@ MUSLIN_INLINE Float8 near_lanes(const Point* const (*corners)[lane_count], float
   }
   const Lanes3 extent = {magnitude(n.x), magnitude(n.y), magnitude(n.z)};
   const Float8 zero = {}, none[4] = {};
-  Float8 width[4];
-  for (int i = 0; i < 4; ++i) width[i] = dot(extent, half[i]);
-  const Float8 gap = separation<kind>(n, middle, width), r = radius[0] + radius[1] + (reach + rounding);
-  const Float8 square = dot(n, n);
+  // The least distance along one direction is concave in time: no less than at its ends.
+  Float8 gap = zero + INFINITY;
+  for (int e = 0; e < ends; ++e) {
+    Float8 width[4];
+    for (int i = 0; i < 4; ++i) width[i] = dot(extent, half[e][i]);
+    gap = smaller(gap, separation<kind>(n, middle[e], width));
+  }
+  const Float8 r = radius[0] + radius[1] + (reach + rounding), square = dot(n, n);
   const Int8 far = (gap > zero) & (gap * gap > r * r * square);
   Float8 length = zero;
   for (int l = 0; l < lane_count; ++l) length[l] = std::sqrt(square[l]);
@@ -158,7 +185,7 @@ MUSLIN_INLINE Float8 near_lanes(const Point* const (*corners)[lane_count], float
   return far ? zero - 1 : larger(apart, zero);
 }
 
-template <PairKind kind, class Point>
+template <PairKind kind, int ends, class Point>
 MUSLIN_INLINE void find_lanes(const Point* points, const std::array<int, 4>* pairs, std::size_t count,
                               float reach, float rounding, float* distance) {
   for (std::size_t first = 0; first < count; first += lane_count) {
@@ -168,7 +195,7 @@ MUSLIN_INLINE void find_lanes(const Point* points, const std::array<int, 4>* pai
       const std::array<int, 4>& pair = pairs[first + static_cast<std::size_t>(std::min(l, used - 1))];
       for (std::size_t i = 0; i < 4; ++i) corners[i][l] = points + pair[i];
     }
-    const Float8 least = near_lanes<kind>(corners, reach, rounding);
+    const Float8 least = near_lanes<kind, ends>(corners, reach, rounding);
     for (int l = 0; l < used; ++l) distance[first + static_cast<std::size_t>(l)] = least[l];
   }
 }
@@ -177,12 +204,24 @@ template <class Point>
 MUSLIN_VECTOR_CODE void find_vertex_triangle(const Point* points, const std::array<int, 4>* pairs,
                                              std::size_t count, float reach, float rounding,
                                              float* distance) {
-  find_lanes<PairKind::vertex_triangle>(points, pairs, count, reach, rounding, distance);
+  find_lanes<PairKind::vertex_triangle, 1>(points, pairs, count, reach, rounding, distance);
 }
 template <class Point>
 MUSLIN_VECTOR_CODE void find_edge_edge(const Point* points, const std::array<int, 4>* pairs,
                                        std::size_t count, float reach, float rounding, float* distance) {
-  find_lanes<PairKind::edge_edge>(points, pairs, count, reach, rounding, distance);
+  find_lanes<PairKind::edge_edge, 1>(points, pairs, count, reach, rounding, distance);
+}
+template <class Point>
+MUSLIN_VECTOR_CODE void find_moving_vertex_triangle(const Point* points, const std::array<int, 4>* pairs,
+                                                    std::size_t count, float reach, float rounding,
+                                                    float* distance) {
+  find_lanes<PairKind::vertex_triangle, 2>(points, pairs, count, reach, rounding, distance);
+}
+template <class Point>
+MUSLIN_VECTOR_CODE void find_moving_edge_edge(const Point* points, const std::array<int, 4>* pairs,
+                                              std::size_t count, float reach, float rounding,
+                                              float* distance) {
+  find_lanes<PairKind::edge_edge, 2>(points, pairs, count, reach, rounding, distance);
 }
 
 }  // namespace
@@ -190,11 +229,10 @@ MUSLIN_VECTOR_CODE void find_edge_edge(const Point* points, const std::array<int
 void PairCulling::find_near(PairKind kind, std::span<const std::array<int, 4>> pairs, double reach,
                             float* distance) const {
   const auto r = static_cast<float>(reach * (1 + 1e-6));
-  if (kind == PairKind::vertex_triangle) {
-    find_vertex_triangle(points_.data(), pairs.data(), pairs.size(), r, rounding_, distance);
-  } else {
-    find_edge_edge(points_.data(), pairs.data(), pairs.size(), r, rounding_, distance);
-  }
+  const auto find = kind == PairKind::vertex_triangle
+                        ? (moving_ ? find_moving_vertex_triangle<Point> : find_vertex_triangle<Point>)
+                        : (moving_ ? find_moving_edge_edge<Point> : find_edge_edge<Point>);
+  find(points_.data(), pairs.data(), pairs.size(), r, rounding_, distance);
 }
 
 }  // namespace muslin

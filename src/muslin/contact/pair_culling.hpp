@@ -1,6 +1,6 @@
-// Which pairs of features may come close while their points stay in boxes. A plane across the closest points
-// of a pair proves for most that they may not. In float, eight pairs at once; errs on the side of keeping a
-// pair.
+// Which pairs of features may come close while their points move with boxes. A plane across the closest
+// points of a pair proves for most that they may not. In float, eight pairs at once; errs on the side of
+// keeping a pair.
 #pragma once
 
 #include <array>
@@ -10,14 +10,17 @@
 
 #include "muslin/contact/contact_surface.hpp"
 #include "muslin/contact/distance.hpp"
+#include "muslin/contact/moving_boxes.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
 
 class PairCulling {
  public:
-  /// Each point in its box lower … upper (#P by 3, [m]); planes are laid across the closest points at `at`.
-  void set_points(const ContactSurface& surface, ConstVectors at, ConstVectors lower, ConstVectors upper);
+  /// Each point in its box (#P); planes are laid across the closest points at `at` (#P by 3, [m]).
+  void set_points(const ContactSurface& surface, ConstVectors at, const MovingBoxes& boxes);
+  /// The boxes of those points alone whose `moved` (#P) is not zero.
+  void set_boxes(std::span<const std::uint8_t> moved, const MovingBoxes& boxes);
 
   /// For pair i, given by its four points: distance[i] is negative unless it may come within radius + radius
   /// + `reach` [m]; if it may, its features are at least distance[i] apart at `at` [m]. `kind` is
@@ -27,10 +30,15 @@ class PairCulling {
 
  private:
   struct Point {
-    float at[3], middle[3], half[3];  ///< relative to the centre of all boxes [m]
+    float at[3];
+    float middle[2][3], half[2][3];  ///< of the box at both ends, relative to the centre of all boxes [m]
     float radius;
   };
+  void set_box(std::size_t p, const MovingBoxes& boxes);
+
   std::vector<Point> points_;
+  Vec3 centre_ = Vec3::Zero();
+  bool moving_ = false;
   float rounding_ = 0;  ///< of a distance between points [m]
 };
 

@@ -27,7 +27,7 @@ struct LeafPair {
 
 /// What eight triangles own, as ranges of groups of eight.
 struct Leaf {
-  FloatBox box;
+  MovingBox box;
   int first_points = 0, last_points = 0;
   int first_edges = 0, last_edges = 0;
 };
@@ -47,39 +47,41 @@ struct Output {
 /// The groups of all leaves; triangles of leaf l are group l.
 struct Groups {
   std::vector<Leaf> leaves;
-  std::vector<FeatureLanes> points, edges, triangles;
+  FeatureGroups points, edges, triangles;
 };
 
+template <int ends>
 MUSLIN_INLINE void points_against_triangles(const Groups& groups, const Leaf& a, int leaf_b,
                                             Output<VertexTriangle>& out) {
-  const FeatureLanes& triangles = groups.triangles[static_cast<std::size_t>(leaf_b)];
-  const FloatBox& box = groups.leaves[static_cast<std::size_t>(leaf_b)].box;
+  const MovingBox& box = groups.leaves[static_cast<std::size_t>(leaf_b)].box;
+  const FeatureLanes& triangles = groups.triangles.lanes[static_cast<std::size_t>(leaf_b)];
   for (int g = a.first_points; g < a.last_points; ++g) {
-    const FeatureLanes& points = groups.points[static_cast<std::size_t>(g)];
+    const FeatureLanes& points = groups.points.lanes[static_cast<std::size_t>(g)];
     out.reserve();
-    for (LaneBits rows = lanes_in_box(points, box); rows != 0; rows &= rows - 1) {
+    for (LaneBits rows = lanes_in_box<ends>(groups.points, g, box); rows != 0; rows &= rows - 1) {
       const int i = first_lane(rows);
-      for (LaneBits hits = lanes_near<1, 3>(points, i, triangles); hits != 0; hits &= hits - 1)
-        out.add(points.id[i], triangles.id[first_lane(hits)]);
+      LaneBits hits = lanes_near<ends, 1, 3>(groups.points, g, i, groups.triangles, leaf_b);
+      for (; hits != 0; hits &= hits - 1) out.add(points.id[i], triangles.id[first_lane(hits)]);
     }
   }
 }
 
+template <int ends>
 MUSLIN_INLINE void edges_against_edges(const Groups& groups, const LeafPair& pair, Output<EdgeEdge>& out) {
   const Leaf &a = groups.leaves[static_cast<std::size_t>(pair.a)],
              &b = groups.leaves[static_cast<std::size_t>(pair.b)];
   for (int g = a.first_edges; g < a.last_edges; ++g) {
-    const FeatureLanes& first = groups.edges[static_cast<std::size_t>(g)];
-    const LaneBits rows = lanes_in_box(first, b.box);
+    const FeatureLanes& first = groups.edges.lanes[static_cast<std::size_t>(g)];
+    const LaneBits rows = lanes_in_box<ends>(groups.edges, g, b.box);
     if (rows == 0) continue;
     // Within a leaf each pair once: later groups, and later lanes of the same group.
     for (int h = pair.a == pair.b ? g : b.first_edges; h < b.last_edges; ++h) {
-      const FeatureLanes& second = groups.edges[static_cast<std::size_t>(h)];
-      if (lanes_in_box(second, a.box) == 0) continue;
+      if (lanes_in_box<ends>(groups.edges, h, a.box) == 0) continue;
+      const FeatureLanes& second = groups.edges.lanes[static_cast<std::size_t>(h)];
       out.reserve();
       for (LaneBits left = rows; left != 0; left &= left - 1) {
         const int i = first_lane(left);
-        LaneBits hits = lanes_near<2, 2>(first, i, second);
+        LaneBits hits = lanes_near<ends, 2, 2>(groups.edges, g, i, groups.edges, h);
         if (g == h) hits &= lanes_after(i);
         for (; hits != 0; hits &= hits - 1) {
           const int e = first.id[i], f = second.id[first_lane(hits)];
@@ -90,20 +92,29 @@ MUSLIN_INLINE void edges_against_edges(const Groups& groups, const LeafPair& pai
   }
 }
 
-MUSLIN_VECTOR_CODE
-void compare_leaves(const Groups& groups, const std::vector<LeafPair>& pairs, FeaturePairs& found) {
+template <int ends>
+MUSLIN_INLINE void compare_in(const Groups& groups, const std::vector<LeafPair>& pairs, FeaturePairs& found) {
   Output<VertexTriangle> vertex_triangle{found.vertex_triangle};
   Output<EdgeEdge> edge_edge{found.edge_edge};
   for (const LeafPair& pair : pairs) {
-    points_against_triangles(groups, groups.leaves[static_cast<std::size_t>(pair.a)], pair.b,
-                             vertex_triangle);
+    points_against_triangles<ends>(groups, groups.leaves[static_cast<std::size_t>(pair.a)], pair.b,
+                                   vertex_triangle);
     if (pair.a != pair.b)
-      points_against_triangles(groups, groups.leaves[static_cast<std::size_t>(pair.b)], pair.a,
-                               vertex_triangle);
-    edges_against_edges(groups, pair, edge_edge);
+      points_against_triangles<ends>(groups, groups.leaves[static_cast<std::size_t>(pair.b)], pair.a,
+                                     vertex_triangle);
+    edges_against_edges<ends>(groups, pair, edge_edge);
   }
   found.vertex_triangle.resize(vertex_triangle.count);
   found.edge_edge.resize(edge_edge.count);
+}
+
+MUSLIN_VECTOR_CODE
+void compare_leaves(const Groups& groups, const std::vector<LeafPair>& pairs, FeaturePairs& found) {
+  compare_in<1>(groups, pairs, found);
+}
+MUSLIN_VECTOR_CODE
+void compare_moving_leaves(const Groups& groups, const std::vector<LeafPair>& pairs, FeaturePairs& found) {
+  compare_in<2>(groups, pairs, found);
 }
 
 }  // namespace
@@ -129,7 +140,9 @@ struct PairSearch::Tree {
   std::vector<int> order;  ///< triangles by leaf
   Groups groups;
   std::vector<Task> tasks;
-  std::vector<FloatBox> node_boxes, point_boxes;
+  std::vector<MovingBox> node_boxes;
+  std::vector<FloatBox> point_boxes[2];  ///< at both ends
+  int ends = 1;                          ///< of boxes, that count: two where any moves
   std::vector<std::uint8_t> lone;        ///< points that are a triangle (a, a, a)
   std::span<const std::uint8_t> moved;   ///< of the present search; empty: all
   std::vector<std::uint8_t> node_moved;  ///< whether there is such a point in the node
@@ -158,7 +171,7 @@ struct PairSearch::Tree {
       ask_points = true;
     }
     node_boxes.resize(nodes.size());
-    point_boxes.resize(surface->point_count());
+    for (auto& boxes : point_boxes) boxes.resize(surface->point_count());
     make_tasks();
   }
 
@@ -189,10 +202,9 @@ struct PairSearch::Tree {
   }
 
   /// Puts a feature into the last group from `first` on, or a new one.
-  static void append(std::vector<FeatureLanes>& all, int first, int& used, int id,
-                     std::initializer_list<int> points) {
-    if (used % lane_count == 0) all.emplace_back();
-    FeatureLanes& lanes = all[static_cast<std::size_t>(first + used / lane_count)];
+  static void append(FeatureGroups& all, int first, int& used, int id, std::initializer_list<int> points) {
+    if (used % lane_count == 0) all.lanes.emplace_back(), all.ends.emplace_back();
+    FeatureLanes& lanes = all.lanes[static_cast<std::size_t>(first + used / lane_count)];
     const int lane = used++ % lane_count;
     lanes.id[lane] = id;
     int k = 0;
@@ -201,9 +213,9 @@ struct PairSearch::Tree {
 
   void add_leaf(int begin, int end) {
     Leaf leaf;
-    leaf.first_points = static_cast<int>(groups.points.size());
-    leaf.first_edges = static_cast<int>(groups.edges.size());
-    const int first_triangles = static_cast<int>(groups.triangles.size());
+    leaf.first_points = static_cast<int>(groups.points.lanes.size());
+    leaf.first_edges = static_cast<int>(groups.edges.lanes.size());
+    const int first_triangles = static_cast<int>(groups.triangles.lanes.size());
     int points = 0, edges = 0, triangles = 0;
     for (int i = begin; i < end; ++i) {
       const int triangle = order[static_cast<std::size_t>(i)];
@@ -219,8 +231,8 @@ struct PairSearch::Tree {
         append(groups.edges, leaf.first_edges, edges, e, {ends[0], ends[1]});
       }
     }
-    leaf.last_points = static_cast<int>(groups.points.size());
-    leaf.last_edges = static_cast<int>(groups.edges.size());
+    leaf.last_points = static_cast<int>(groups.points.lanes.size());
+    leaf.last_edges = static_cast<int>(groups.edges.lanes.size());
     groups.leaves.push_back(leaf);
   }
 
@@ -271,25 +283,36 @@ struct PairSearch::Tree {
     for (std::size_t i = 0; i < level.size(); ++i) tasks[i].root = level[i];
   }
 
-  void fit(ConstVectors lower, ConstVectors upper, double reach) {
-    parallel_for(point_boxes.size(), grain, [&](std::size_t begin, std::size_t end) {
+  void fit(const MovingBoxes& boxes, double reach) {
+    ends = boxes.moving() ? 2 : 1;
+    for (int end = 0; end < ends; ++end) fit_end(boxes.at(end), end, reach);
+    find_moved_nodes();
+  }
+
+  void fit_end(const std::vector<PointBox>& boxes, int e, double reach) {
+    std::vector<FloatBox>& points = point_boxes[e];
+    parallel_for(points.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
+        if (!moved.empty() && moved[p] == 0) continue;
         const double pad = surface->radius_of(static_cast<int>(p)) + reach / 2;
-        FloatBox& box = point_boxes[p];
-        const Vec3 &low = lower[p], &high = upper[p];
+        FloatBox& box = points[p];
+        const Vec3 &low = boxes[p].lower, &high = boxes[p].upper;
         box.low =
             Float4{rounded_down(low[0] - pad), rounded_down(low[1] - pad), rounded_down(low[2] - pad), 0};
         box.high = Float4{rounded_up(high[0] + pad), rounded_up(high[1] + pad), rounded_up(high[2] + pad), 0};
       }
     });
-    const auto fit_lanes = [&](std::vector<FeatureLanes>& all, int points_each) {
-      parallel_for(all.size(), grain / lane_count, [&](std::size_t begin, std::size_t end) {
+    const auto fit_lanes = [&](FeatureGroups& all, int points_each) {
+      parallel_for(all.lanes.size(), grain / lane_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) {
-          for (int lane = 0; lane < lane_count && all[g].id[lane] >= 0; ++lane) {
-            FloatBox box = point_boxes[static_cast<std::size_t>(all[g].points[0][lane])];
+          const FeatureLanes& lanes = all.lanes[g];
+          if (!moved.empty() && !has_moved(lanes, points_each)) continue;
+          BoxLanes& boxes = all.boxes(e, g);
+          for (int i = 0; i < lane_count && lanes.id[i] >= 0; ++i) {
+            FloatBox box = points[static_cast<std::size_t>(lanes.points[0][i])];
             for (int k = 1; k < points_each; ++k)
-              box.extend(point_boxes[static_cast<std::size_t>(all[g].points[k][lane])]);
-            all[g].set_box(lane, box);
+              box.extend(points[static_cast<std::size_t>(lanes.points[k][i])]);
+            boxes.set(i, box);
           }
         }
       });
@@ -303,22 +326,36 @@ struct PairSearch::Tree {
       FloatBox box;
       if (node.right < 0) {
         const auto l = static_cast<std::size_t>(node.leaf);
-        const FeatureLanes& lanes = groups.triangles[l];
+        const BoxLanes& lanes = groups.triangles.boxes(e, l);
         for (int i = 0; i < lane_count; ++i) {
           box.extend({Float4{lanes.low[0][i], lanes.low[1][i], lanes.low[2][i], 0},
                       Float4{lanes.high[0][i], lanes.high[1][i], lanes.high[2][i], 0}});
         }
-        groups.leaves[l].box = box;
+        groups.leaves[l].box.ends[e] = box;
       } else {
-        box = node_boxes[n + 1];
-        box.extend(node_boxes[static_cast<std::size_t>(node.right)]);
+        box = node_boxes[n + 1].ends[e];
+        box.extend(node_boxes[static_cast<std::size_t>(node.right)].ends[e]);
       }
-      node_boxes[n] = box;
+      node_boxes[n].ends[e] = box;
     }
-    find_moved_nodes();
+  }
+
+  /// What is apart along an axis at both ends, on the same side, is so in between.
+  bool overlap(int a, int b) const {
+    const FloatBox *const p = node_boxes[static_cast<std::size_t>(a)].ends,
+                          *const q = node_boxes[static_cast<std::size_t>(b)].ends;
+    Int4 above = p[0].low > q[0].high, below = q[0].low > p[0].high;
+    if (ends == 2) above &= p[1].low > q[1].high, below &= q[1].low > p[1].high;
+    return !any(above | below);
   }
 
   bool has_moved(int point) const { return moved[static_cast<std::size_t>(point)] != 0; }
+  bool has_moved(const FeatureLanes& lanes, int points_each) const {
+    for (int i = 0; i < lane_count && lanes.id[i] >= 0; ++i)
+      for (int k = 0; k < points_each; ++k)
+        if (has_moved(lanes.points[k][i])) return true;
+    return false;
+  }
 
   void find_moved_nodes() {
     if (moved.empty()) return;
@@ -329,10 +366,7 @@ struct PairSearch::Tree {
         node_moved[n] = node_moved[n + 1] | node_moved[static_cast<std::size_t>(node.right)];
         continue;
       }
-      const FeatureLanes& lanes = groups.triangles[static_cast<std::size_t>(node.leaf)];
-      node_moved[n] = 0;
-      for (int i = 0; i < lane_count && lanes.id[i] >= 0; ++i)
-        for (const Int8& corners : lanes.points) node_moved[n] |= moved[static_cast<std::size_t>(corners[i])];
+      node_moved[n] = has_moved(groups.triangles.lanes[static_cast<std::size_t>(node.leaf)], 3) ? 1 : 0;
     }
   }
   bool concerns(const NodePair& pair) const {
@@ -381,9 +415,7 @@ struct PairSearch::Tree {
       const NodePair pair = task.stack.back();
       task.stack.pop_back();
       if (!concerns(pair)) continue;
-      if (pair.a != pair.b && !overlap(node_boxes[static_cast<std::size_t>(pair.a)],
-                                       node_boxes[static_cast<std::size_t>(pair.b)]))
-        continue;
+      if (pair.a != pair.b && !overlap(pair.a, pair.b)) continue;
       if (is_leaf(pair.a) && is_leaf(pair.b)) {
         task.leaves.push_back(
             {nodes[static_cast<std::size_t>(pair.a)].leaf, nodes[static_cast<std::size_t>(pair.b)].leaf});
@@ -391,7 +423,7 @@ struct PairSearch::Tree {
         descend(pair, [&](NodePair p) { task.stack.push_back(p); });
       }
     }
-    compare_leaves(groups, task.leaves, task.found);
+    (ends == 2 ? compare_moving_leaves : compare_leaves)(groups, task.leaves, task.found);
     leave_out_unwanted(task.found);
     leave_out_unmoved(task.found);
   }
@@ -406,11 +438,11 @@ PairSearch::~PairSearch() = default;
 PairSearch::PairSearch(PairSearch&&) noexcept = default;
 PairSearch& PairSearch::operator=(PairSearch&&) noexcept = default;
 
-void PairSearch::find(ConstVectors lower, ConstVectors upper, double reach, FeaturePairs& found,
+void PairSearch::find(const MovingBoxes& boxes, double reach, FeaturePairs& found,
                       std::span<const std::uint8_t> moved) {
   Tree& tree = *tree_;
   tree.moved = moved;
-  tree.fit(lower, upper, reach);
+  tree.fit(boxes, reach);
   parallel_for(tree.tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) tree.run(tree.tasks[i]);
   });

@@ -1,4 +1,4 @@
-// The broad phase: which features of a contact surface may come close while its points move within boxes.
+// The broad phase: which features of a contact surface may come close while its points move with boxes.
 //
 // One binary tree over the triangles, built once; its shape stays, its boxes are fitted anew to each motion
 // (van den Bergen 1997). Leaves hold eight triangles, whose boxes are compared in vector code. Boxes are in
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "muslin/contact/contact_surface.hpp"
+#include "muslin/contact/moving_boxes.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
@@ -45,10 +46,11 @@ class PairSearch {
   PairSearch& operator=(PairSearch&&) noexcept;
 
   /// All pairs that can come within radius + radius + `reach` [m] of each other while every point stays in
-  /// its box lower … upper (#P by 3, [m]); and some more, for boxes are not the features. `found` is
-  /// overwritten; its memory is used again.
-  /// `moved` (#P, or empty for all points): only pairs that have a point where this is not zero.
-  void find(ConstVectors lower, ConstVectors upper, double reach, FeaturePairs& found,
+  /// its box (#P), at the same time in their motion; and some more, for boxes are not the features. `found`
+  /// is overwritten; its memory is used again.
+  /// `moved` (#P, or empty for all points): only pairs that have a point where this is not zero; the boxes of
+  /// the others, and `reach`, are those of the last search.
+  void find(const MovingBoxes& boxes, double reach, FeaturePairs& found,
             std::span<const std::uint8_t> moved = {});
 
  private:

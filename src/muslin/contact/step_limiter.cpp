@@ -248,11 +248,13 @@ struct StepLimiter::Work {
     }
   }
 
-  /// The largest factor that keeps a point in its box.
+  /// The largest factor that keeps a point in its box. Where that goes away from the point, none would.
   double factor_within_box(std::size_t p) const {
+    const PointBox& box = candidates.boxes().end(p);
+    if (!box.contains(x[p])) return 1;
     double factor = 1;
     for (int k = 0; k < 3; ++k) {
-      const double low = candidates.lower()[p][k] - x[p][k], high = candidates.upper()[p][k] - x[p][k];
+      const double low = box.lower[k] - x[p][k], high = box.upper[k] - x[p][k];
       if (u[p][k] > high) factor = std::min(factor, std::max(0.0, high) / u[p][k]);
       if (u[p][k] < low) factor = std::min(factor, std::min(0.0, low) / u[p][k]);
     }

@@ -1,7 +1,8 @@
 // Takes from a step what would make surfaces touch, locally: the guarantee that nothing ever crosses.
 //
 //  1. A few passes take away only the excess normal approach of each pair; the rest of the motion stays.
-//  2. Vertices whose points would leave the boxes in which the pairs are known are shortened to stay within.
+//  2. Vertices whose points would leave the boxes in which the pairs are known are shortened to stay within,
+//     unless a box goes away from its point: then the caller has to look where the point ends.
 //  3. Conservative advancement of each pair shortens the step of the vertices of those that still come too
 //     close; again for all pairs that these vertices touch, until there is none.
 //
