@@ -16,7 +16,10 @@ namespace {
 constexpr double armijo = 1e-4;
 constexpr double rounding = 1e-12;  // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-6;
-constexpr double loosest_forcing = 0.01, tightest_forcing = 1e-3, fast_forcing = 0.05;
+constexpr double loosest_forcing = 0.01, tightest_forcing = 1e-3;
+/// Of fast steps: the last of the iterations that every step may make is solved for better than the first and
+/// than those that are made because much moves, which others follow.
+constexpr double fast_forcing = 0.05, loose_fast_forcing = 0.1;
 /// A fast step ends early where its last motion was below the first share of the guard's resolution and left
 /// no more than so much of the gradient, makes one iteration more where the motion was above the second, and
 /// as many as so many more while it is above the third.
@@ -88,9 +91,13 @@ class GuardedStep {
         break;
       }
       LinearSettings linear;
-      linear.tolerance =
-          fast ? fast_forcing
-               : std::clamp(0.3 * settings_.tolerance / imbalance.largest, tightest_forcing, loosest_forcing);
+      if (fast) {
+        const bool last = report.newton_iterations + 1 == settings_.fast_iterations;
+        linear.tolerance = last ? fast_forcing : loose_fast_forcing;
+      } else {
+        linear.tolerance =
+            std::clamp(0.3 * settings_.tolerance / imbalance.largest, tightest_forcing, loosest_forcing);
+      }
       ++report.newton_iterations;
       const auto try_to_move = [&] {
         {

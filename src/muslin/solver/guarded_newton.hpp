@@ -13,8 +13,8 @@ namespace muslin {
 /// for the contact potential anew, solves H s = −g, has the step limited and backtracks along what is left of
 /// it. The residual is that of contact and friction as they are at the x it belongs to: at its end a
 /// converged step is a fixed point of what is lagged, found with Anderson's acceleration. A fast step ends
-/// where the last iteration moved no vertex by more than some share of the guard's resolution, after four
-/// more than its iterations at the latest, and reports what residual remains.
+/// where the last iteration moved no vertex by more than some share of the guard's resolution and took most
+/// of the gradient, after four more than its iterations at the latest, and reports what residual remains.
 StepReport minimize_guarded(const StepProblem& problem, const IncrementalPotential& function,
                             const SolverSettings& settings, const State& state, double length, Vectors x,
                             NewtonWorkspace& workspace);

@@ -35,8 +35,8 @@ struct SolverSettings {
   /// tolerance [m/s²].
   double tolerance = 1e-2;
   int max_iterations = 100;  ///< Newton iterations of a converged step
-  /// Newton iterations of a fast step: fewer where hardly anything moves any more, up to four more where
-  /// much still does.
+  /// Newton iterations of a fast step: fewer where hardly anything moves any more and hardly any force is
+  /// left, up to four more where much still moves.
   int fast_iterations = 2;
   double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
 };
