@@ -24,7 +24,7 @@ def measure(build, pattern, machine, root):
     kept = pathlib.Path(root) / "bench" / "results" / f"{machine}.cloth.json"
     runs = json.loads(kept.read_text()) if kept.exists() else {}
     for run in found:
-        runs[run["name"].replace("/iterations:1/manual_time", "")] = {
+        runs[run["name"].replace("/iterations:1", "").replace("/manual_time", "")] = {
             k: v for k, v in run.items() if isinstance(v, float)}
     kept.write_text(json.dumps(runs, indent=1, sort_keys=True) + "\n")
     write(runs, machine, root)
@@ -32,13 +32,18 @@ def measure(build, pattern, machine, root):
 
 
 def text(runs, machine):
-    rows, parts = [], {}
+    rows, spreads, parts = [], [], {}
     for name, r in sorted(runs.items()):
         if name.count("/") == 1:
             part, size = name.split("/")
             parts.setdefault(part.replace("_", " "), {})[int(size)] = number(r["cpu_time"])
             continue
         case, mode, threads = name.split("/")
+        if threads == "spread":
+            spreads.append([case, *(" / ".join(form(r[f"{what}_{k}"]) for k in ("least", "median", "most"))
+                                    for what, form in (("stretch", "{:.3f}".format), ("average", number),
+                                                       ("worst", number))), number(r["crossings"])])
+            continue
         spent = sum(r[k] for k in ("search_ms", "limit_ms", "contact_ms", "assembly_ms", "solve_ms"))
         shares = " / ".join(f"{100 * r[k] / max(spent, 1e-9):.0f}"
                             for k in ("search_ms", "limit_ms", "contact_ms", "assembly_ms", "solve_ms"))
@@ -50,7 +55,9 @@ def text(runs, machine):
     sizes = sorted({size for part in parts.values() for size in part})
     timed = table(["part", *(f"{n}²" for n in sizes)],
                   [[part, *(times.get(n, "–") for n in sizes)] for part, times in sorted(parts.items())])
+    spread = table(["case", "stretch", "ms a frame, average", "worst", "crossings"], spreads)
     return "\n".join([f"On {machine}:", "", *table(head, rows), "",
+                      "Eight starts that are micrometres apart, least / median / most:", "", *spread, "",
                       "Parts of contact on one thread, crumpled cloth draped over a ball, milliseconds of processor time:",
                       "", *timed])
 

@@ -38,14 +38,11 @@ void find_pairs(benchmark::State& state, bool moving) {
   const Drape drape(static_cast<int>(state.range(0)));
   PairSearch search(drape.surface, drape.rest.positions);
   const std::vector<Vec3> after = moving ? drape.moved() : drape.cloth.positions;
-  std::vector<Vec3> lower, upper;
-  for (std::size_t p = 0; p < after.size(); ++p) {
-    lower.push_back(after[p].cwiseMin(drape.cloth.positions[p]));
-    upper.push_back(after[p].cwiseMax(drape.cloth.positions[p]));
-  }
+  MovingBoxes boxes(after.size());
+  for (std::size_t p = 0; p < after.size(); ++p) boxes.stay(p, drape.cloth.positions[p], after[p], 0);
   FeaturePairs found;
   for (auto _ : state) {
-    search.find(lower, upper, drape.distance, found);
+    search.find(boxes, drape.distance, found);
     benchmark::DoNotOptimize(found);
   }
   state.counters["vertex_triangle"] = static_cast<double>(found.vertex_triangle.size());
