@@ -20,6 +20,9 @@ constexpr double pushed_share = 1.5;
 /// Displacements of more edges than this are limited in pieces, of which there are no more than so many.
 constexpr double edges_at_once = 2;
 constexpr int most_pieces = 256;
+/// Times that a displacement is limited, after points that were stopped were found anew. Each finds others,
+/// as a rule none after two or three; what has not ended by then does not move.
+constexpr int most_rounds = 32;
 /// What pushes others goes this share of that at once: all that it might push has to be searched that far.
 constexpr double pushed_at_once = 0.125;
 /// Edges taken to be this many contact distances long where nothing bends.
@@ -197,13 +200,17 @@ void ContactGuard::limit(ConstVectors q, Vectors d) {
   cover(q, d);
   ++counts_.limits;
   outside_.resize(x_.size());
-  do {
-    const Stopwatch watch(counts_.limit_seconds);
-    measure(q);
-    const LimitReport report = limiter_.limit(distances_, d, held_);
-    counts_.deflected += report.deflected;
-    counts_.shortened += report.shortened;
-  } while (renew_stopped(d));
+  for (int round = 0; round < most_rounds; ++round) {
+    {
+      const Stopwatch watch(counts_.limit_seconds);
+      measure(q);
+      const LimitReport report = limiter_.limit(distances_, d, held_);
+      counts_.deflected += report.deflected;
+      counts_.shortened += report.shortened;
+    }
+    if (!renew_stopped(d)) return;
+  }
+  std::fill(d.begin(), d.end(), Vec3::Zero());
 }
 
 void ContactGuard::advance(Vectors q, ConstVectors d) {
