@@ -323,7 +323,7 @@ TEST(ContactCandidates, AreCompleteWhileAllPointsGoAtTheSamePace) {
   }
   ContactCandidates candidates(scene.surface, scene.positions, range),
       fresh(scene.surface, scene.positions, range);
-  candidates.update(scene.positions, there, margin);
+  candidates.update(scene.positions, there, margin, 0.1);
   EXPECT_TRUE(candidates.boxes().moving());
   const std::size_t unstopped = candidates.pairs().size();
   candidates.renew(moved, scene.positions, stopped, margin);

@@ -35,18 +35,6 @@ std::array<int, 4> points_of(const ContactSurface& surface, PairKind kind, int f
   }
 }
 
-/// Mean length at rest of the edges of bodies that are not fixed; infinite where there are none.
-double mean_edge(const ContactSurface& surface, ConstVectors rest) {
-  double sum = 0;
-  int count = 0;
-  for (const ContactSurface::Edge& e : surface.edges()) {
-    if (surface.body_at(e[0]).fixed) continue;
-    sum += (rest[static_cast<std::size_t>(e[0])] - rest[static_cast<std::size_t>(e[1])]).norm();
-    ++count;
-  }
-  return count > 0 ? sum / count : std::numeric_limits<double>::infinity();
-}
-
 std::vector<int> points_of_bodies(const ContactSurface& surface) {
   std::vector<int> sizes(surface.bodies().size(), 0);
   for (int p = 0; p < static_cast<int>(surface.point_count()); ++p)
@@ -79,7 +67,6 @@ ContactCandidates::ContactCandidates(std::shared_ptr<const ContactSurface> surfa
     : surface_(std::move(surface)), contact_distance_(contact_distance), search_(surface_, rest) {
   if (!(contact_distance > 0))
     throw Error(ErrorKind::usage, "the contact distance is not positive", "give a length in metres");
-  edge_ = mean_edge(*surface_, rest);
   // What is close at rest within a body; boxes are widened by the radii already.
   const std::vector<int> sizes = points_of_bodies(*surface_);
   double thickest = 0;
@@ -166,7 +153,7 @@ void ContactCandidates::add_near(PairKind kind, std::span<const Pair> found, Nea
   }
 }
 
-void ContactCandidates::update(ConstVectors begin, ConstVectors end, double margin) {
+void ContactCandidates::update(ConstVectors begin, ConstVectors end, double margin, double long_way) {
   const std::size_t points = surface_->point_count();
   if (begin.size() != points || end.size() != points)
     throw Error(ErrorKind::usage, "contact candidates need one position for each point", "give #P positions");
@@ -175,7 +162,7 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
   double farthest = 0;
   for (std::size_t p = 0; p < points; ++p) farthest = std::max(farthest, (end[p] - begin[p]).squaredNorm());
   boxes_.restart();
-  const bool slow = farthest <= edge_ * edge_;
+  const bool slow = farthest <= long_way * long_way;
   for (std::size_t p = 0; p < points; ++p) {
     if (slow) {
       boxes_.stay(p, begin[p], end[p], margin);

@@ -103,7 +103,7 @@ void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end, double 
   memory_.end.assign(end.begin(), end.end());
   memory_.margin = margin;
   renewed_ = false;
-  candidates_.update(begin, end, margin);
+  candidates_.update(begin, end, margin, edge_);
   distances_.forget();
 }
 
@@ -294,7 +294,7 @@ void ContactGuard::restore(ContactMemory memory) {
 
 void ContactGuard::find_again() {
   if (memory_.begin.empty()) return;
-  candidates_.update(memory_.begin, memory_.end, memory_.margin);
+  candidates_.update(memory_.begin, memory_.end, memory_.margin, edge_);
   distances_.forget();
 }
 
