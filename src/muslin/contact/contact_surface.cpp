@@ -16,6 +16,7 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
       ownership_(triangles_.size()),
       body_of_point_(std::move(body_of_point)),
       point_shares_(body_of_point_.size(), 0),
+      round_triangles_(body_of_point_.size(), -1),
       bodies_(std::move(bodies)),
       planes_(std::move(planes)) {
   const auto points = static_cast<int>(body_of_point_.size());
@@ -64,6 +65,8 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
       throw Error(ErrorKind::usage, "a contact triangle joins two bodies", "give each body its own points");
     for (int i = 0; i < 3; ++i) {
       const int p = corners[i], q = corners[(i + 1) % 3];
+      int& round = round_triangles_[static_cast<std::size_t>(p)];
+      if (round < 0 && (corners[0] == corners[1] || corners[1] == corners[2])) round = static_cast<int>(t);
       if (p != q) sides.push_back({{std::min(p, q), std::max(p, q)}, static_cast<int>(t), i});
       if ((i > 0 && p == corners[0]) || (i == 2 && p == corners[1])) continue;
       ++point_shares_[static_cast<std::size_t>(p)];

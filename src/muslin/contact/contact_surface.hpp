@@ -89,6 +89,10 @@ class ContactSurface {
                  b = body_at(point_b).friction.value_or(common);
     return a == b ? a : std::sqrt(a * b);
   }
+  /// Whether a point is of a codimensional triangle: the centre of a sphere, an end of a capsule's axis.
+  bool is_round(int point) const { return round_triangle(point) >= 0; }
+  /// That triangle, the first of several; −1: none.
+  int round_triangle(int point) const { return round_triangles_[static_cast<std::size_t>(point)]; }
   /// How many triangles share a point or an edge.
   int triangles_at_point(int p) const { return point_shares_[static_cast<std::size_t>(p)]; }
   int triangles_at_edge(int e) const { return edge_shares_[static_cast<std::size_t>(e)]; }
@@ -98,6 +102,7 @@ class ContactSurface {
   std::vector<Edge> edges_;
   std::vector<Ownership> ownership_;
   std::vector<int> body_of_point_, point_shares_, edge_shares_;
+  std::vector<int> round_triangles_;
   std::vector<ContactBody> bodies_;
   std::vector<ContactPlane> planes_;
 };

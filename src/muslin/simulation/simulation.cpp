@@ -158,7 +158,7 @@ void Simulation::Parts::touch() {
   guard->begin(state.positions, time().step(), fixed);
   guard->potential(state.positions);
   guard->end(state.positions);
-  tally.pressed = guard->last_potential().parts(state.positions).pressed;
+  tally.pressed = guard->last_potential().parts(state.positions).normal;
 }
 
 void Simulation::Parts::store_energies() {
@@ -288,7 +288,7 @@ void Simulation::Parts::account(const StepContext& context, double length, const
   }
   if (guard) {
     const ContactPotential& contact = guard->last_potential();
-    const double pressed = contact.parts(state.positions).pressed;
+    const double pressed = contact.parts(state.positions).normal;
     acts.push_back({EnergyRole::elastic, &contact, pressed - tally.pressed});
     tally.pressed = pressed;
   }

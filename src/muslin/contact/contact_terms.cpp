@@ -1,0 +1,344 @@
+#include "muslin/contact/contact_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "muslin/contact/contact_energy.hpp"
+#include "muslin/contact/turning_plane.hpp"
+#include "muslin/core/parallel.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr std::size_t grain = 1024;
+constexpr double rounding = 1e-9;
+/// A round body meets the insides of faces and edges within this share of the range, and not at all where
+/// they come nearer to it than their corners by less than the second share: then these are enough.
+constexpr double round_range = 0.5, round_sagitta = 0.25;
+/// Edges fade out towards their ends over this share of the range, where the vertex there is in range as
+/// well, but of no more than this share of their length; and below this squared sine of their angle.
+constexpr double end_ranges = 0.5, end_share = 0.05, parallel_share = 1e-3;
+
+double smoothstep(double y) {
+  const double c = std::clamp(y, 0.0, 1.0);
+  return c * c * (3 - 2 * c);
+}
+
+/// The factor of two edges: 1 where both closest points are well inside, 0 at ends and where the edges are
+/// parallel.
+double edge_factor(const ContactPair& pair, const PairGeometry& at, ConstVectors x) {
+  const auto edge = [&](std::size_t i) {
+    return Vec3(x[static_cast<std::size_t>(pair.points[i + 1])] -
+                x[static_cast<std::size_t>(pair.points[i])]);
+  };
+  const Vec3 u = edge(0), v = edge(2);
+  const double sine = u.cross(v).squaredNorm() / std::max(u.squaredNorm() * v.squaredNorm(), 1e-300);
+  const double apart = std::min(1.0, sine / parallel_share);
+  const auto inside = [&](double t, double squared_length) {
+    const double width =
+        std::min(end_share, end_ranges * pair.range / std::sqrt(std::max(squared_length, 1e-300)));
+    return smoothstep(std::min(t, 1 - t) / width);
+  };
+  return inside(at.weights[1], u.squaredNorm()) * inside(-at.weights[3], v.squaredNorm()) * apart *
+         (2 - apart);
+}
+
+PairGeometry of_difference(const Vec3& difference, const std::array<double, 4>& weights) {
+  const double d = difference.norm();
+  return {d > 0 ? Vec3(difference / d) : Vec3(Vec3::Zero()), d, weights};
+}
+
+/// The range of a pair's term; 0 where it has none.
+double range_of(const ContactSurface& surface, const ContactPair& pair, ConstVectors x) {
+  const bool faces = pair.kind == PairKind::vertex_triangle;
+  if (pair.kind == PairKind::point_plane) return pair.range;
+  const bool first = surface.is_round(pair.points[0]), second = surface.is_round(pair.points[3]);
+  if (!(first || (second && !faces))) return pair.range;
+  if (first && second) return pair.range;
+  const std::size_t begin = faces ? 1 : first ? 2 : 0, end = faces || first ? 4 : 2;
+  double longest = 0;
+  for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t j = begin; j < i; ++j)
+      longest = std::max(longest, (x[static_cast<std::size_t>(pair.points[i])] -
+                                   x[static_cast<std::size_t>(pair.points[j])]).squaredNorm());
+  const double sagitta = longest / (8 * pair.thickness);
+  return sagitta < round_sagitta * pair.range ? 0 : round_range * pair.range;
+}
+
+bool is_near(double gap, double range) { return gap > 0 && gap < PairDistances::ranges_known * range; }
+
+/// The terms of one vertex against the triangles of `pairs`.
+class VertexTerms {
+ public:
+  VertexTerms(const PairDistances& distances, std::vector<ContactTerm>& out)
+      : surface_(distances.candidates().surface()), distances_(distances), out_(out) {}
+
+  void add(std::span<const int> pairs) {
+    edges_.clear();
+    corners_.clear();
+    const std::span<const ContactPair> all = distances_.candidates().pairs();
+    for (const int i : pairs) {
+      const ContactPair& pair = all[static_cast<std::size_t>(i)];
+      const auto t = static_cast<std::size_t>(pair.second);
+      const Vec3i &corners = surface_.triangles()[t], &edges = surface_.triangle_edges()[t];
+      for (int k = 0; k < 3; ++k) {
+        const bool corner_again =
+            (k > 0 && corners[k] == corners[0]) || (k == 2 && corners[2] == corners[1]);
+        if (!corner_again) note(corners_, corners[k], pair);
+        const bool edge_again = (k > 0 && edges[k] == edges[0]) || (k == 2 && edges[2] == edges[1]);
+        if (edges[k] >= 0 && !edge_again) note(edges_, edges[k], pair);
+      }
+      const double range = range_of(surface_, pair, distances_.points());
+      if (range > 0) {
+        out_.push_back({ContactTerm::Kind::vertex_triangle, pair.points, -1, pair.key(), pair.thickness,
+                        range, surface_.stiffness(pair.points[0], pair.points[3])});
+      }
+    }
+    const ContactPair& first = all[static_cast<std::size_t>(pairs[0])];
+    const int v = first.points[0];
+    if (is_lone_point(v)) add_corners(v, first);
+    for (const Feature& e : edges_) {
+      if (e.triangles == 1) continue;
+      const ContactSurface::Edge& ends = surface_.edges()[static_cast<std::size_t>(e.index)];
+      for (Feature& corner : corners_)
+        if (corner.index == ends[0] || corner.index == ends[1]) corner.coefficient -= 1 - e.triangles;
+      add_feature(e, {v, ends[0], ends[1], -1}, ContactTerm::Kind::vertex_edge, 1 - e.triangles);
+    }
+    for (const Feature& corner : corners_) {
+      add_feature(corner, {v, corner.index, -1, -1}, ContactTerm::Kind::vertex_vertex,
+                  corner.coefficient + 1 - corner.triangles);
+    }
+  }
+
+ private:
+  bool is_lone_point(int v) const {
+    if (!surface_.is_round(v)) return false;
+    const Vec3i& t = surface_.triangles()[static_cast<std::size_t>(surface_.round_triangle(v))];
+    return t[0] == t[1] && t[1] == t[2];
+  }
+
+  /// The centre of a sphere and the corners of triangles; the search finds them with the triangles only.
+  void add_corners(int v, const ContactPair& pair) {
+    for (const Feature& corner : corners_) {
+      ContactTerm term;
+      term.kind = ContactTerm::Kind::vertex_vertex;
+      term.points = {v, corner.index, -1, -1};
+      term.key = ContactPair::key_of(PairKind::vertex_triangle, corner.index, surface_.round_triangle(v));
+      term.thickness = pair.thickness;
+      term.range = pair.range;
+      term.stiffness = surface_.stiffness(v, corner.index);
+      const double gap = term_geometry(surface_, term, distances_.points()).distance - term.thickness;
+      if (is_near(gap, term.range)) out_.push_back(term);
+    }
+  }
+
+  struct Feature {
+    int index = 0, triangles = 0, coefficient = 0;
+    double thickness = 0, range = 0;
+  };
+
+  void note(std::vector<Feature>& features, int index, const ContactPair& pair) const {
+    const double range = range_of(surface_, pair, distances_.points());
+    const auto known =
+        std::find_if(features.begin(), features.end(), [&](const Feature& f) { return f.index == index; });
+    if (known == features.end()) {
+      features.push_back({index, 1, 0, pair.thickness, range});
+    } else {
+      ++known->triangles;
+      known->thickness = std::min(known->thickness, pair.thickness);
+      known->range = std::min(known->range, range);
+    }
+  }
+
+  void add_feature(const Feature& feature, const std::array<int, 4>& points, ContactTerm::Kind kind,
+                   int coefficient) {
+    if (coefficient == 0) return;
+    const ContactTerm term = {kind,
+                              points,
+                              -1,
+                              0,
+                              feature.thickness,
+                              feature.range,
+                              coefficient * surface_.stiffness(points[0], points[1])};
+    if (!(term.range > 0)) return;
+    const double gap = term_geometry(surface_, term, distances_.points()).distance - term.thickness;
+    if (is_near(gap, term.range)) out_.push_back(term);
+  }
+
+  const ContactSurface& surface_;
+  const PairDistances& distances_;
+  std::vector<ContactTerm>& out_;
+  std::vector<Feature> edges_, corners_;
+};
+
+/// Leaves out points without weight and names each point once.
+MergedContact reduced(const ContactTerm& term, const PairGeometry& at) {
+  MergedContact contact;
+  contact.key = term.key;
+  contact.normal = at.normal;
+  int count = 0;
+  const auto take = [&](int from, int to) {
+    const int begin = count;
+    for (int i = from; i < to; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (term.points[k] < 0 || at.weights[k] == 0) continue;
+      int place = begin;
+      while (place < count && contact.points[static_cast<std::size_t>(place)] < term.points[k]) ++place;
+      if (place < count && contact.points[static_cast<std::size_t>(place)] == term.points[k]) {
+        contact.weights[static_cast<std::size_t>(place)] += at.weights[k];
+        continue;
+      }
+      for (int j = count++; j > place; --j) {
+        contact.points[static_cast<std::size_t>(j)] = contact.points[static_cast<std::size_t>(j - 1)];
+        contact.weights[static_cast<std::size_t>(j)] = contact.weights[static_cast<std::size_t>(j - 1)];
+      }
+      contact.points[static_cast<std::size_t>(place)] = term.points[k];
+      contact.weights[static_cast<std::size_t>(place)] = at.weights[k];
+    }
+  };
+  take(0, term.first_size());
+  contact.first_size = count;
+  take(term.first_size(), 4);
+  return contact;
+}
+
+}  // namespace
+
+PairGeometry term_geometry(const ContactSurface& surface, const ContactTerm& term, ConstVectors x) {
+  const auto at = [&](std::size_t i) -> const Vec3& { return x[static_cast<std::size_t>(term.points[i])]; };
+  switch (term.kind) {
+    case ContactTerm::Kind::point_plane: {
+      const ContactPlane& plane = surface.planes()[static_cast<std::size_t>(term.plane)];
+      if (plane.turns()) {
+        const OverPlane over = over_plane(std::array{at(0), at(1), at(2), at(3)});
+        return {over.normal, over.distance, over.weights};
+      }
+      return {plane.normal, plane.normal.dot(at(0) - at(1)), {1, -1, 0, 0}};
+    }
+    case ContactTerm::Kind::vertex_triangle: {
+      const ClosestPoints c = closest_vertex_triangle(at(0), at(1), at(2), at(3));
+      return of_difference(c.difference, c.weights);
+    }
+    case ContactTerm::Kind::vertex_edge: {
+      const double t = closest_on_segment(at(0), at(1), at(2));
+      return of_difference(at(0) - at(1) - t * (at(2) - at(1)), {1, -(1 - t), -t, 0});
+    }
+    case ContactTerm::Kind::vertex_vertex:
+      return of_difference(at(0) - at(1), {1, -1, 0, 0});
+    case ContactTerm::Kind::edge_edge:
+      break;
+  }
+  const ClosestPoints c = closest_edge_edge(at(0), at(1), at(2), at(3));
+  return of_difference(c.difference, c.weights);
+}
+
+std::vector<ContactTerm> contact_terms(const PairDistances& distances) {
+  const ContactSurface& surface = distances.candidates().surface();
+  const std::span<const ContactPair> pairs = distances.candidates().pairs();
+  const std::size_t blocks = (pairs.size() + grain - 1) / grain;
+  std::vector<std::vector<int>> near_of_block(blocks);
+  parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (distances.is_known(i) &&
+          is_near(distances[i].distance - pairs[i].thickness, pairs[i].range))
+        near_of_block[begin / grain].push_back(static_cast<int>(i));
+    }
+  });
+  std::vector<ContactTerm> terms;
+  std::vector<int> of_vertices;
+  for (const std::vector<int>& block : near_of_block) {
+    for (const int i : block) {
+      const ContactPair& pair = pairs[static_cast<std::size_t>(i)];
+      if (pair.kind == PairKind::vertex_triangle) {
+        of_vertices.push_back(i);
+        continue;
+      }
+      const double stiffness =
+          surface.stiffness(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)]);
+      if (pair.kind == PairKind::point_plane) {
+        terms.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness,
+                         pair.range, stiffness});
+        continue;
+      }
+      const double factor =
+          edge_factor(pair, distances[static_cast<std::size_t>(i)], distances.points());
+      const double range = range_of(surface, pair, distances.points());
+      if (factor > 0 && range > 0) {
+        terms.push_back({ContactTerm::Kind::edge_edge, pair.points, -1, pair.key(), pair.thickness,
+                         range, factor * stiffness});
+      }
+    }
+  }
+  const auto pair_of = [&](int i) -> const ContactPair& { return pairs[static_cast<std::size_t>(i)]; };
+  std::sort(of_vertices.begin(), of_vertices.end(), [&](int i, int j) {
+    return std::pair(pair_of(i).first, pair_of(i).second) < std::pair(pair_of(j).first, pair_of(j).second);
+  });
+  VertexTerms of_vertex(distances, terms);
+  for (std::size_t begin = 0; begin < of_vertices.size();) {
+    std::size_t end = begin + 1;
+    while (end < of_vertices.size() && pair_of(of_vertices[end]).first == pair_of(of_vertices[begin]).first)
+      ++end;
+    // Triangles of one body are one surface; another body is another contact.
+    for (std::size_t from = begin; from < end;) {
+      const int body = surface.body_of(pair_of(of_vertices[from]).points[3]);
+      std::size_t to = from + 1;
+      while (to < end && surface.body_of(pair_of(of_vertices[to]).points[3]) == body) ++to;
+      of_vertex.add(std::span(of_vertices).subspan(from, to - from));
+      from = to;
+    }
+    begin = end;
+  }
+  return terms;
+}
+
+std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::span<const ContactTerm> terms,
+                                           ConstVectors x) {
+  const std::size_t blocks = (terms.size() + grain - 1) / grain;
+  std::vector<std::vector<MergedContact>> parts(blocks);
+  parallel_for(terms.size(), grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<MergedContact>& part = parts[begin / grain];
+    for (std::size_t i = begin; i < end; ++i) {
+      const PairGeometry at = term_geometry(surface, terms[i], x);
+      const double gap = at.distance - terms[i].thickness;
+      if (gap >= terms[i].range) continue;
+      const Law law = contact_law(gap, terms[i].range);
+      MergedContact contact = reduced(terms[i], at);
+      contact.slope = terms[i].stiffness * law.slope;
+      contact.curvature = terms[i].stiffness * law.curvature;
+      contact.stiffness = terms[i].stiffness;
+      contact.magnitude = std::abs(contact.slope);
+      contact.distance = at.distance;
+      part.push_back(contact);
+    }
+  });
+  // Terms of one vertex follow one another.
+  std::vector<MergedContact> merged;
+  std::size_t group = 0;
+  for (const std::vector<MergedContact>& part : parts) {
+    for (const MergedContact& contact : part) {
+      if (!merged.empty() && merged.back().points[0] != contact.points[0]) group = merged.size();
+      const auto same = std::find_if(merged.begin() + static_cast<std::ptrdiff_t>(group), merged.end(),
+                                     [&](const MergedContact& known) {
+                                       return known.first_size == contact.first_size &&
+                                              known.points == contact.points;
+                                     });
+      if (same == merged.end()) {
+        merged.push_back(contact);
+        continue;
+      }
+      same->slope += contact.slope;
+      same->curvature += contact.curvature;
+      same->stiffness += contact.stiffness;
+      same->magnitude += contact.magnitude;
+      if (same->key == 0) same->key = contact.key;
+    }
+  }
+  std::erase_if(merged, [](const MergedContact& contact) {
+    return contact.stiffness == 0 && std::abs(contact.slope) <= rounding * contact.magnitude;
+  });
+  return merged;
+}
+
+}  // namespace muslin
