@@ -10,8 +10,8 @@ namespace muslin {
 namespace {
 
 constexpr int lanes = element_lanes;
-constexpr double gravity = 9.81;              // [m/s²]
-constexpr double end_of_barrier = 31.0 / 32;  // of the way from onset to limit
+constexpr double gravity = 9.81;        // [m/s²]
+constexpr double end_of_barrier = 0.5;  // of the way from onset to limit
 // Of that way too: stretches nearer to each other than this count as equal where their difference divides.
 constexpr double equal = 1e-6;
 
@@ -210,7 +210,7 @@ StretchBarrier::Law StretchBarrier::at(double stretch) const {
 }
 
 double stretch_limit_stiffness(double membrane, double mass, double mean_edge, double limit) {
-  return std::max(membrane, mass * gravity / (mean_edge * (limit - 1)));
+  return 2 * std::max(membrane, mass * gravity / (mean_edge * (limit - 1)));
 }
 
 StretchLimitEnergy::StretchLimitEnergy(const Shell& shell, double limit, double stiffness,

@@ -7,11 +7,12 @@
 // d = s₁ − s₀ and u = (λ − s₀)/d,
 //
 //   u ≤ 0        ψ = 0
-//   u ≤ 31/32    ψ = −d² u² ln(1 − u)                    the barrier of Li et al. 2020, eq. 6
-//   else         the parabola with the same value, slope and curvature at 31/32,
+//   u ≤ 1/2      ψ = −d² u² ln(1 − u)                    the barrier of Li et al. 2020, eq. 6
+//   else         the parabola with the same value, slope and curvature at 1/2,
 //
 // twice continuously differentiable, convex, increasing, finite everywhere: a triangle of three times its
-// length is pulled back. ψ'' is at most 1092, ψ' is 36.7 d where the parabola begins.
+// length is pulled back. ψ'' is at most 6.39, ψ' is 4.39 d at the limit. So the limit is stiff, but no wall:
+// docs/theory/shells.md says what a wall would cost.
 //
 // With F = Σ λᵢ uᵢ vᵢᵀ the Hessian has the eigenvalues (the 3 by 2 case of the analysis in Kim, Eberle,
 // Dynamic Deformables, 2022)
@@ -56,10 +57,9 @@ class StretchBarrier {
   Law there_;
 };
 
-/// κ [N/m]: what a shell of this membrane stiffness and mass [kg] needs. The largest tension that its own
-/// weight brings about is m g/h, where one vertex of a mesh with edges h carries everything; held within
-/// s₁ − 1 that takes a stiffness of m g/(h (s₁ − 1)), whatever the fabric. Forces from pins are resisted by
-/// the fabric too, so κ is not less than its stiffness. g is 9.81 m/s² in every scene.
+/// κ [N/m] for a shell of this membrane stiffness [N/m], mass [kg] and mean edge h [m]: twice the larger of
+/// the first and m g/(h (s₁ − 1)). Where one vertex carries everything the tension is m g/h; the limit is
+/// reached at 4.4 times that, whatever the fabric. g is 9.81 m/s² in every scene.
 double stretch_limit_stiffness(double membrane, double mass, double mean_edge, double limit);
 
 class StretchLimitEnergy : public ShellEnergy {

@@ -141,7 +141,7 @@ BodyModel read_model(const TomlTable& body) {
   return model;
 }
 
-/// Below this the fabric may as well be taken for unstretchable, and steps take many iterations.
+/// Below this, products with blocks are made in double at usual resolutions: many times slower.
 constexpr double low_stretch_limit = 1.005;
 
 void read_shell_settings(const TomlTable& table, BodySettings& body, std::vector<std::string>& warnings) {
@@ -156,7 +156,7 @@ void read_shell_settings(const TomlTable& table, BodySettings& body, std::vector
     body.stretch_limit = table.number("stretch_limit", "", {1, 10, true});
     if (*body.stretch_limit < low_stretch_limit) {
       warnings.push_back(fmt::format(
-          "{}: a `stretch_limit` of less than {} takes many iterations a step; cloth looks the same with {}",
+          "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",
           table.title(), low_stretch_limit, low_stretch_limit));
     }
   }
