@@ -46,6 +46,8 @@ type = "gravity"
 std::shared_ptr<const Model> shared(Model model) { return std::make_shared<const Model>(std::move(model)); }
 
 TEST(StretchLimitRun, HoldsWhileTheSheetFallsAndHangs) {
+  // The account takes stored energy by quadrature, which a limit that begins within a step is not smooth for.
+  constexpr double quadrature = 1e-4;  // [J], of 1 J that the sheet falls
   double without = 1, with = 1;
   Simulation weak(shared(hanging(12, ""))), limited(shared(hanging(12, "stretch_limit = 1.05\n")));
   const double balance = limited.diagnostics().balance();
@@ -54,7 +56,7 @@ TEST(StretchLimitRun, HoldsWhileTheSheetFallsAndHangs) {
     limited.advance();
     without = std::max(without, weak.diagnostics().max_stretch);
     with = std::max(with, limited.diagnostics().max_stretch);
-    EXPECT_NEAR(limited.diagnostics().balance(), balance, 1e-3);  // of a sheet that falls by 1 J
+    EXPECT_NEAR(limited.diagnostics().balance() - limited.diagnostics().unbalanced, balance, quadrature);
   }
   EXPECT_GT(without, 1.2);
   EXPECT_LT(with, 1.06);
@@ -78,7 +80,8 @@ TEST(StretchLimitRun, ALimitThatIsNewOnResumeIsWork) {
   for (int frame = 0; frame < 20; ++frame) limited.advance();
   const Diagnostics& last = limited.diagnostics();
   EXPECT_GT(last.work, weak.diagnostics().work + 1);
-  EXPECT_NEAR(last.balance(), balance, 1e-3 * (last.work - weak.diagnostics().work));
+  EXPECT_NEAR(last.balance() - last.unbalanced, balance - weak.diagnostics().unbalanced,
+              1e-3 * (last.work - weak.diagnostics().work));
   EXPECT_LT(last.max_stretch, 1.04);
 }
 
