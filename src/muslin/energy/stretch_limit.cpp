@@ -12,7 +12,7 @@ namespace {
 constexpr int lanes = element_lanes;
 constexpr double gravity = 9.81;        // [m/s²]
 constexpr double end_of_barrier = 0.5;  // of the way from onset to limit
-// Of that way too: stretches nearer to each other than this count as equal where their difference divides.
+// Stretches nearer to each other than this share of that way count as equal where their difference divides.
 constexpr double equal = 1e-6;
 
 /// FᵀF in (warp, weft), as its eigenvalues mean ± radius and the direction of the larger one.
@@ -20,7 +20,7 @@ struct Stretched : StrainedTriangles {
   double mean[lanes], half[lanes], shear[lanes];
 };
 
-/// Whether a triangle of the batch is stretched beyond the onset, `square` being that of the latter.
+/// True if a triangle of the batch is stretched beyond the onset, `square` being that of the latter.
 MUSLIN_VECTOR_CODE bool exceeds(double square, const TriangleRest& rest, const Batch<3>& x, Stretched& s) {
   along_threads(rest, x, s.a, s.b);
   double excess[lanes];

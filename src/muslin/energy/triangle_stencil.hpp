@@ -1,5 +1,5 @@
-// What energies of F = [a, b], the 3 by 2 deformation gradient of a triangle, share: F from the corners of a
-// batch of triangles, forces on the corners from those conjugate to a and b, and the stiffness
+// The common part of energies of F = [a, b], the 3 by 2 deformation gradient of a triangle: F from the
+// corners of a batch of triangles, forces on the corners from those conjugate to a and b, and the stiffness
 //
 //   d²W = A (C₁₁ (a·da)² + 2 C₁₂ (a·da)(b·db) + C₂₂ (b·db)² + G (a·db + b·da)²)
 //       + S_uu da·da + S_vv db·db + 2 S_uv da·db,
@@ -8,6 +8,7 @@
 // [N/m] of a lane.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -48,7 +49,7 @@ inline std::vector<std::array<int, 3>> corners_of(const Shell& shell) {
 /// By axis and lane.
 using LaneVectors = double[3][element_lanes];
 
-/// What became of warp and weft, and the stress times the area.
+/// Warp and weft as they have become, and the stress times the area.
 struct StrainedTriangles {
   LaneVectors a, b;
   double suu[element_lanes], svv[element_lanes], suv[element_lanes];
@@ -129,7 +130,7 @@ void add_corner_block(const Moduli& c, const TriangleRest& rest, const StrainedT
   block.diagonal().array() += s.suu[l] * u * u + s.svv[l] * v * v + 2 * s.suv[l] * u * v;
 }
 
-/// What the block of corners i and j is made of, for i ≤ j in the order (0,0), (0,1), (0,2), (1,1), (1,2),
+/// The parts of the block of corners i and j, for i ≤ j in the order (0,0), (0,1), (0,2), (1,1), (1,2),
 /// (2,2): aa a aᵀ + ba b aᵀ + ab a bᵀ + bb b bᵀ + geometric 1, in columns along corner j.
 struct BlockFactors {
   float a[3][element_lanes], b[3][element_lanes];
