@@ -252,8 +252,11 @@ def scene_input(scene, names, snapshots, first, last):
             cloth.material = bpy.path.abspath(m.fabric)
         if m.model == "LATTICE":
             cloth.voxel_width = (m.voxel_width or suggestion(obj, snapshots[obj.name])) * scale
-        elif m.rest_shape == "BASE":
-            cloth.rest_mesh = name + ".rest.obj"
+        else:
+            if m.rest_shape == "BASE":
+                cloth.rest_mesh = name + ".rest.obj"
+            if m.use_stretch_limit:
+                cloth.stretch_limit = m.stretch_limit
         if m.use_release and cloth.pinned:
             # Half a step later: in the frame itself they still hold.
             cloth.release = (max(m.release_frame - first, 0) + 0.5 / props.steps_per_frame) / rate

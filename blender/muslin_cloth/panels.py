@@ -140,6 +140,9 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
             row.operator("muslin.suggest_width", text="", icon="LIGHT")
         else:
             layout.prop(m, "rest_shape")
+            layout.prop(m, "use_stretch_limit")
+            if m.use_stretch_limit:
+                layout.prop(m, "stretch_limit")
         column = layout.column()
         column.enabled = context.scene.muslin.use_contact
         column.prop(m, "use_self_contact")

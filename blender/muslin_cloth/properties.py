@@ -47,6 +47,12 @@ class MuslinObject(bpy.types.PropertyGroup):
     friction: FloatProperty(
         name="Friction", default=0.3, min=0, max=100, soft_max=1,
         description="Coulomb's coefficient of its surface; between two surfaces it is the geometric mean of theirs")
+    use_stretch_limit: BoolProperty(
+        name="Limit Stretch", description="The cloth becomes stiff before any part is stretched by more than a factor")
+    stretch_limit: FloatProperty(
+        name="Stretch Limit", default=1.05, min=1.001, max=10, soft_min=1.01, soft_max=1.5, precision=3, step=1,
+        description="Most that any part may be stretched, over its length at rest: 1.05 is 5 % longer. Keeps weak "
+                    "fabrics from sagging where they are held; less than 1.01 takes long")
     rest_shape: EnumProperty(
         name="Rest Shape", description="The shape that is free of stress",
         items=[("START", "At the Start", "As it stands in the first frame"),

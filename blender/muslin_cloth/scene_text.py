@@ -22,6 +22,7 @@ class Cloth:
     release: Optional[float] = None  # when the pin lets go [s]
     self_contact: bool = True
     friction: Optional[float] = None  # None: the scene's
+    stretch_limit: Optional[float] = None  # of a shell: length over length at rest; None: no limit
 
 
 @dataclass
@@ -121,6 +122,8 @@ def _body(cloth):
         lines.append(f"voxel_width = {number(cloth.voxel_width)}")
     if cloth.thickness > 0:
         lines.append(f"thickness = {number(cloth.thickness)}")
+    if cloth.stretch_limit is not None:
+        lines.append(f"stretch_limit = {number(cloth.stretch_limit)}")
     if cloth.rest_mesh:
         lines.append(f"rest_mesh = {quoted(cloth.rest_mesh)}")
     return lines

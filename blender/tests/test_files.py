@@ -114,7 +114,7 @@ class SceneText(Scratch):
 
     def test_the_program_reads_it(self):
         scene = self.scene()
-        scene.cloths[0].friction = 0.18
+        scene.cloths[0].friction, scene.cloths[0].stretch_limit = 0.18, 1.05
         writer = point_cache.Writer(self.folder / "a b.pc2", 4)
         writer.append(np.zeros((4, 3)))
         writer.close()
@@ -124,6 +124,7 @@ class SceneText(Scratch):
             told = json.loads(out)
             self.assertEqual([b["name"] for b in told["bodies"]], ["a b", "solid"])
             self.assertEqual([b["model"] for b in told["bodies"]], ["shell", "lattice"])
+            self.assertEqual([b.get("stretch_limit") for b in told["bodies"]], [1.05, None])
             self.assertEqual(told["time"]["frames"], 12)
             self.assertEqual([p["name"] for p in told["pins"]], ["pins of a b", "pins of solid"])
             self.assertEqual(told["pins"][0]["vertices"], 2)
@@ -145,9 +146,12 @@ class SceneText(Scratch):
         colliders = tomllib.loads(scene_text.scene_toml(scene))["collider"]
         self.assertEqual(colliders[0], {"name": "ball", "shape": "mesh", "mesh": "ball.obj"})
         self.assertEqual(colliders[1]["sequence"], "arm.pc2")
+        self.assertFalse([b for b in told["body"] if "stretch_limit" in b])
         scene.cloths[0].friction, scene.colliders[1].friction = 0.0, 0.18
+        scene.cloths[0].stretch_limit = 1.05
         told = tomllib.loads(scene_text.scene_toml(scene))
         self.assertEqual([b.get("friction") for b in told["body"]], [0, None])
+        self.assertEqual([b.get("stretch_limit") for b in told["body"]], [1.05, None])
         self.assertEqual([c.get("friction") for c in told["collider"]], [None, 0.18])
         scene.contact = False
         told = tomllib.loads(scene_text.scene_toml(scene))

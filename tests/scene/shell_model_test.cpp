@@ -130,6 +130,47 @@ TEST_F(ShellModel, WarpTurnsWithTheBody) {
   EXPECT_THAT(build(anisotropic).warnings, testing::ElementsAre(HasSubstr("its warp is taken along x")));
 }
 
+TEST_F(ShellModel, StretchLimitIsATermOfItsOwn) {
+  const Model model = build(body("sheet.obj", "stretch_limit = 1.08\n"));
+  EXPECT_EQ(model.scene.bodies[0].stretch_limit, 1.08);
+  EXPECT_EQ(nlohmann::json::parse(model.scene.resolved)["body"][0]["stretch_limit"], 1.08);
+  EXPECT_EQ(nlohmann::json::parse(describe_json(model))["bodies"][0]["stretch_limit"], 1.08);
+  EXPECT_THAT(describe_text(model), HasSubstr("stretched to 1.08 of its length at most"));
+  ASSERT_EQ(model.potentials.size(), 3u);
+  const PotentialTerm& term = model.potentials[1];
+  EXPECT_EQ(term.name, "cloth: stretch limit");
+  EXPECT_EQ(term.role, EnergyRole::elastic);
+  std::vector<Vec3> x = model.rest_positions;
+  for (Vec3& p : x) p.x() *= 1.035;
+  EXPECT_EQ(term.potential->value(x), 0);
+  for (Vec3& p : x) p.x() *= 1.035;
+  EXPECT_GT(term.potential->value(x), 0);
+  EXPECT_EQ(model.bodies[0].statistics.stable_step, build(body()).bodies[0].statistics.stable_step);
+
+  const Scene without = parse_scene(body(), folder() / "scene.toml");
+  EXPECT_FALSE(without.bodies[0].stretch_limit);
+  EXPECT_FALSE(nlohmann::json::parse(without.resolved)["body"][0].contains("stretch_limit"));
+  EXPECT_THAT(model.warnings, testing::IsEmpty());
+  EXPECT_THAT(build(body("sheet.obj", "stretch_limit = 1.002\n")).warnings,
+              testing::ElementsAre(HasSubstr("`stretch_limit` of less than 1.005")));
+  EXPECT_THAT(build("[solver]\nintegrator = 'symplectic_euler'\n[time]\nsteps_per_frame = 1000\n" +
+                    body("sheet.obj", "stretch_limit = 1.08\n"))
+                  .warnings,
+              testing::ElementsAre(HasSubstr("take an implicit integrator")));
+}
+
+TEST_F(ShellModel, StretchLimitIsRefusedWithItsPlace) {
+  for (const char* limit : {"1", "0.9", "10.1", "'5 %'"}) {
+    EXPECT_THAT(message(body("sheet.obj", "stretch_limit = " + std::string(limit) + "\n")),
+                testing::AllOf(HasSubstr("scene.toml:6:17"), HasSubstr("`stretch_limit`")))
+        << limit;
+  }
+  EXPECT_EQ(message(body("sheet.obj", "stretch_limit = 10\n")), "no error");
+  EXPECT_THAT(
+      message("[[body]]\nmesh = 'sheet.obj'\nvoxel_width = 1\nmaterial = 'cotton'\nstretch_limit = 1.1\n"),
+      testing::AllOf(HasSubstr("scene.toml:5:17"), HasSubstr("`stretch_limit` is a setting of shells")));
+}
+
 TEST_F(ShellModel, IsDescribed) {
   const Model model = build(body());
   const auto json = nlohmann::json::parse(describe_json(model))["bodies"][0];

@@ -84,7 +84,7 @@ std::vector<std::string> changes_since(const fs::path& directory, const Model& m
     changes.push_back(setting);
     const bool of_collider =
         setting.starts_with("collider") && setting.find("keyframes") == std::string::npos;
-    if (setting.ends_with(".friction")) continue;
+    if (setting.ends_with(".friction") || setting.ends_with(".stretch_limit")) continue;
     if (setting.starts_with("body") || of_collider) bodies.push_back(setting);
   }
   if (!bodies.empty()) {

@@ -17,6 +17,7 @@
 
 #include "muslin/energy/element_slabs.hpp"
 #include "muslin/energy/shell_energy.hpp"
+#include "muslin/energy/triangle_stencil.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
@@ -51,7 +52,7 @@ class MembraneEnergy : public ShellEnergy {
   Constants constants_;
   ElementSlabs<3> slabs_;
   std::vector<ElementSlabs<3>::Slots> slots_;  // by entry: the block of each pair of corners
-  std::vector<double> rest_[5];  // by entry: the inverse rest edges (00, 10, 01, 11) [1/m] and the area [m²]
+  TriangleRests rests_;
 };
 
 }  // namespace muslin

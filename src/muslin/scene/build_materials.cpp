@@ -9,6 +9,7 @@
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/spring_damping.hpp"
 #include "muslin/energy/spring_energy.hpp"
+#include "muslin/energy/stretch_limit.hpp"
 #include "muslin/energy/volume_energy.hpp"
 #include "muslin/potential/mass_damping.hpp"
 #include "muslin/potential/restricted.hpp"
@@ -72,6 +73,7 @@ class BodyMaterial {
         body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson}, pattern);
     add("membrane", membrane);
     add_stiffness(*membrane, 3);
+    if (settings_.stretch_limit) add_stretch_limit(*settings_.stretch_limit, pattern);
     const auto bending = std::make_shared<HingeBending>(
         body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias}, pattern);
     add("bending", bending);
@@ -81,6 +83,14 @@ class BodyMaterial {
     if (m.bending_damping > 0)
       add("bending damping", std::make_shared<ShellDamping>(bending, m.bending_damping));
     add_mass_damping(m.mass_damping);
+  }
+
+  /// Without stiffness at rest, so that the stable step does not know it.
+  void add_stretch_limit(double limit, const std::shared_ptr<const SymmetricPattern>& pattern) {
+    const ShellMaterial& m = *settings_.material.shell;
+    const double stiffness = stretch_limit_stiffness(std::max(m.membrane_warp, m.membrane_weft),
+                                                     body_.statistics.mass, body_.shell.mean_edge, limit);
+    add("stretch limit", std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness, pattern));
   }
 
   void add_mass_damping(double alpha) {

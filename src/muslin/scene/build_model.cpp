@@ -87,6 +87,12 @@ void warn_of_explicit_steps(Model& model) {
   const double step = model.scene.time.step();
   for (std::size_t b = 0; b < model.scene.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
+    if (model.scene.bodies[b].stretch_limit) {
+      model.warnings.push_back(
+          fmt::format("body {}: `stretch_limit` makes symplectic_euler unstable where it pulls; take an "
+                      "implicit integrator",
+                      body.name));
+    }
     if (step <= body.statistics.stable_step) continue;
     model.warnings.push_back(fmt::format(
         "body {}: symplectic_euler is unstable at steps of {:.3g} s; it needs less than {:.3g} s, "

@@ -56,6 +56,7 @@ Json body_json(const Body& body, const BodySettings& settings) {
     json["hinges"] = s.hinges;
     json["area"] = body.shell.area;
     json["mean_edge"] = body.shell.mean_edge;
+    if (settings.stretch_limit) json["stretch_limit"] = *settings.stretch_limit;
     json["warp"] = settings.warp ? "given" : body.mesh.corner_uvs.empty() ? "longest side" : "texture";
     add_counts(body, settings, json);
     json["stable_step"] = finite(s.stable_step);
@@ -147,6 +148,8 @@ std::string shell_text(const Body& body, const BodySettings& settings) {
       "  stiffness   warp {:.4g}, weft {:.4g}, shear {:.4g} N/m; bending {:.3g}, {:.3g}, bias "
       "{:.3g} N·m\n",
       m.membrane_warp, m.membrane_weft, m.membrane_shear, m.bending_warp, m.bending_weft, m.bending_bias);
+  if (settings.stretch_limit)
+    text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *settings.stretch_limit);
   return text;
 }
 

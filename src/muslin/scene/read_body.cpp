@@ -131,7 +131,7 @@ BodyModel read_model(const TomlTable& body) {
   const auto model = static_cast<BodyModel>(body.choice("model", {names[0], names[1]}, 0));
   static const std::vector<std::string> of_lattices = {"voxel_width", "voxels", "threshold",
                                                        "bracing",     "mass",   "boundary_springs"};
-  static const std::vector<std::string> of_shells = {"rest_mesh", "warp"};
+  static const std::vector<std::string> of_shells = {"rest_mesh", "warp", "stretch_limit"};
   const bool shell = model == BodyModel::shell;
   for (const std::string& key : shell ? of_lattices : of_shells) {
     if (!body.has(key)) continue;
@@ -141,7 +141,10 @@ BodyModel read_model(const TomlTable& body) {
   return model;
 }
 
-void read_shell_settings(const TomlTable& table, BodySettings& body) {
+/// Below this, products with blocks are made in double at usual resolutions: many times slower.
+constexpr double low_stretch_limit = 1.005;
+
+void read_shell_settings(const TomlTable& table, BodySettings& body, std::vector<std::string>& warnings) {
   if (table.has("thickness"))
     body.shell_thickness = table.number("thickness", "m", {0, largest_coordinate, false});
   if (table.has("rest_mesh")) {
@@ -149,6 +152,14 @@ void read_shell_settings(const TomlTable& table, BodySettings& body) {
     body.rest_mesh_place = table.place("rest_mesh");
   }
   if (table.has("warp")) body.warp = read_direction(table, "warp", "[1, 0, 0]");
+  if (table.has("stretch_limit")) {
+    body.stretch_limit = table.number("stretch_limit", "", {1, 10, true});
+    if (*body.stretch_limit < low_stretch_limit) {
+      warnings.push_back(fmt::format(
+          "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",
+          table.title(), low_stretch_limit, low_stretch_limit));
+    }
+  }
 }
 
 void read_lattice_settings(const TomlTable& table, BodySettings& body, std::vector<std::string>& warnings) {
@@ -177,7 +188,7 @@ BodySettings read_body(const TomlValue& value, std::size_t index, const std::fil
   body.name = read_name(table, std::filesystem::path(body.mesh).stem().string());
   body.model = read_model(table);
   if (body.model == BodyModel::shell) {
-    read_shell_settings(table, body);
+    read_shell_settings(table, body, warnings);
   } else {
     read_lattice_settings(table, body, warnings);
   }

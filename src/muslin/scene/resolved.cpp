@@ -78,6 +78,7 @@ void add_shell(const BodySettings& b, Json& json) {
   if (b.shell_thickness) json["thickness"] = *b.shell_thickness;
   if (!b.rest_mesh.empty()) json["rest_mesh"] = b.rest_mesh;
   if (b.warp) json["warp"] = vector(*b.warp);
+  if (b.stretch_limit) json["stretch_limit"] = *b.stretch_limit;
   json["material"] = shell_material(b.material);
 }
 

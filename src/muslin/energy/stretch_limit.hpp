@@ -1,0 +1,90 @@
+// A limit of stretch of a shell, in every direction of every triangle:
+//
+//   W = Σ A κ (ψ(λ₁) + ψ(λ₂)),
+//
+// λ₁ ≥ λ₂ the singular values of F = [a, b], the 3 by 2 deformation gradient (membrane_energy.hpp): the
+// largest and the smallest stretch within the triangle. With s₁ the limit, s₀ = (1 + s₁)/2 the onset,
+// d = s₁ − s₀ and u = (λ − s₀)/d,
+//
+//   u ≤ 0        ψ = 0
+//   u ≤ 1/2      ψ = −d² u² ln(1 − u)                    the barrier of Li et al. 2020, eq. 6
+//   else         the parabola with the same value, slope and curvature at 1/2,
+//
+// twice continuously differentiable, convex, increasing, finite everywhere: a triangle of three times its
+// length is pulled back. ψ'' is at most 6.39, ψ' is 4.39 d at the limit. So the limit is stiff, but no wall:
+// docs/theory/shells.md says what a wall would cost.
+//
+// With F = Σ λᵢ uᵢ vᵢᵀ the Hessian has the eigenvalues (the 3 by 2 case of the analysis in Kim, Eberle,
+// Dynamic Deformables, 2022)
+//
+//   A κ ψ''(λᵢ)                       uᵢvᵢᵀ               stretch
+//   A κ (ψ'(λ₁) + ψ'(λ₂))/(λ₁ + λ₂)   u₁v₂ᵀ − u₂v₁ᵀ       turning in the plane
+//   A κ (ψ'(λ₁) − ψ'(λ₂))/(λ₁ − λ₂)   u₁v₂ᵀ + u₂v₁ᵀ       shear; ψ'' where both are equal
+//   A κ ψ'(λᵢ)/λᵢ                     n vᵢᵀ               out of the plane
+//
+// all ≥ 0, as ψ' is neither negative nor decreasing: the exact stiffness is the projected one.
+// docs/theory/shells.md.
+#pragma once
+
+#include <vector>
+
+#include "muslin/energy/element_slabs.hpp"
+#include "muslin/energy/shell_energy.hpp"
+#include "muslin/energy/triangle_stencil.hpp"
+#include "muslin/shell/shell.hpp"
+
+namespace muslin {
+
+/// ψ.
+class StretchBarrier {
+ public:
+  /// s₁ > 1.
+  explicit StretchBarrier(double limit);
+
+  struct Law {
+    double value = 0, slope = 0, curvature = 0;  ///< ψ, ψ', ψ''
+  };
+  Law at(double stretch) const;
+
+  double onset() const { return onset_; }
+  double limit() const { return limit_; }
+
+ private:
+  Law barrier(double depth) const;  // at u < 1
+
+  double limit_, onset_, width_;
+  double stiff_;  // the stretch where the parabola begins
+  Law there_;
+};
+
+/// κ [N/m] for a shell of this membrane stiffness [N/m], mass [kg] and mean edge h [m]: twice the larger of
+/// the first and m g/(h (s₁ − 1)). Where one vertex carries everything the tension is m g/h; the limit is
+/// reached at 4.4 times that, whatever the fabric. g is 9.81 m/s² in every scene.
+double stretch_limit_stiffness(double membrane, double mass, double mean_edge, double limit);
+
+class StretchLimitEnergy : public ShellEnergy {
+ public:
+  /// limit > 1, stiffness κ ≥ 0 [N/m]; `pattern` is the shell's block_pattern, or null.
+  StretchLimitEnergy(const Shell& shell, double limit, double stiffness,
+                     std::shared_ptr<const SymmetricPattern> pattern = nullptr);
+
+  double value(ConstVectors x) const override;
+  void add_gradient(ConstVectors x, Vectors g) const override;
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override;
+  /// The material kind is that of stretch alone.
+  void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
+  void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
+  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+                            SymmetricMatrix& matrix) const override;
+
+  const StretchBarrier& barrier() const { return barrier_; }
+
+ private:
+  StretchBarrier barrier_;
+  double stiffness_;
+  ElementSlabs<3> slabs_;
+  std::vector<ElementSlabs<3>::Slots> slots_;  // by entry: the block of each pair of corners
+  TriangleRests rests_;
+};
+
+}  // namespace muslin
