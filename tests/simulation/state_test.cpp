@@ -1,4 +1,4 @@
-// What is not in the state does not matter: runs whose workspaces are thrown away before every step give the
+// Nothing but the state matters: runs whose workspaces are thrown away before every step give the
 // same bits, and a step that fails leaves the state as it was.
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-// What contact remembers from step to step.
+// The memory of contact from step to step.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct ArrayElement<PairSlip> {
   static constexpr std::string_view layout = "u64 f64x3";
 };
 
-/// What contact remembers between steps, besides positions: a run that goes on with it gives the same bits.
+/// Contact keeps this between steps, besides positions: a run that goes on with it gives the same bits.
 struct ContactMemory {
   std::vector<PairSlip> slips;  ///< by ascending key
   std::vector<Vec3> begin,

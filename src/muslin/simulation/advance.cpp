@@ -130,7 +130,7 @@ void Scratch::prepare(const Model& model) {
   if (masses.size() == count) return;
   fixed.assign(count, 0);
   targets.assign(count, Vec3::Zero());
-  // What moves as it is told has no mass, but solvers divide by masses before they leave it out.
+  // Vertices that move as they are told have no mass, but solvers divide by masses before they leave it out.
   masses = model.masses;
   for (const Prescribed& motion : model.prescribed)
     std::fill_n(masses.begin() + motion.first, motion.start.size(), 1.0);

@@ -1,4 +1,4 @@
-// What a run tells about itself: one row a frame, and where its time went.
+// A run tells about itself: one row a frame, and where its time went.
 #pragma once
 
 #include <cstdint>
@@ -56,7 +56,7 @@ struct Diagnostics {
   }
 };
 
-/// What the frame in work has counted so far.
+/// Counted in the frame in work so far.
 struct FrameCounts {
   std::int64_t newton = 0, linear = 0;                            ///< iterations
   double residual = 0;                                            ///< the largest [m/s²]

@@ -26,7 +26,7 @@ struct Terms {
   EnergyRole role(std::size_t slot) const {
     return slot < potentials.size() ? potentials[slot].role : loads[slot - potentials.size()].role;
   }
-  /// What each load amounts to in a step; null where it does not act.
+  /// The potential of each load in a step; null where it does not act.
   std::vector<std::unique_ptr<Potential>> potentials_of_loads(const StepContext& context) const;
   /// Hashes of the names, #slots.
   std::vector<std::uint64_t> keys() const;
@@ -50,7 +50,7 @@ struct EnergyLedger {
     arrays("energy.stored", self.stored);
   }
 
-  /// What all terms but contact store, the sum of those of one role [J].
+  /// The energy that all terms of one role store, without contact [J].
   double sum(const Terms& acting, EnergyRole role) const;
 
   /// Takes down what is stored at `positions`, fields as they are in the step that `context` begins.

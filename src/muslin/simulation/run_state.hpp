@@ -58,7 +58,7 @@ struct RunState {
 };
 
 std::vector<std::uint8_t> to_checkpoint(const CheckpointHeader& header, const RunState& state);
-/// What the checkpoint does not hold is as in a RunState that is newly made. Errors: input, if the bytes are
+/// An array that the checkpoint does not hold is as in a RunState newly made. Errors: input, if the bytes are
 /// no whole checkpoint, hold what is not known, or are of another number of vertices.
 RunState from_checkpoint(std::span<const std::uint8_t> bytes, std::size_t vertices);
 

@@ -32,7 +32,7 @@ struct Simulation::Impl {
   void describe_state(Diagnostics& row) const;
   /// By hand; for what was put there is no step before.
   void put(State changed);
-  /// What moves as it is told does not move otherwise.
+  /// Vertices that move as they are told do not move otherwise.
   void keep_prescribed(ConstVectors from, Vectors to) const;
 
  private:
