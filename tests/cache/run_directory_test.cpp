@@ -245,7 +245,7 @@ TEST(RunDirectory, AFullDiskIsAnErrorAndTheRunGoesOnLater) {
   run_to(scratch / "straight", frames, false);
   const pid_t child = fork_off([&] {
     std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{5000, 5000};  // bytes a file may have
+    const rlimit limit{6500, 6500};  // bytes a file may have
     ::setrlimit(RLIMIT_FSIZE, &limit);
     run_to(scratch / "run", frames, false);
   });

@@ -57,7 +57,8 @@ TEST_P(FarWays, NeverMakeCrumpledClothCross) {
   std::mt19937_64 random(static_cast<std::uint64_t>(GetParam()));
   Scene scene(22);
   ASSERT_FALSE(scene.crosses());
-  ContactGuard guard(scene.model);
+  ContactMemory memory;
+  ContactGuard guard(scene.model, memory);
   std::vector<std::uint8_t> held(scene.q.size(), 0);
   std::fill(held.begin() + static_cast<std::ptrdiff_t>(scene.cloth_size), held.end(), 1);
   const double edge = guard.resolution();

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "muslin/cache/run_files.hpp"
-#include "muslin/simulation/saved_run.hpp"
+#include "muslin/simulation/run_state.hpp"
 
 namespace muslin::test {
 namespace {
@@ -68,7 +68,7 @@ class FirstTouch : public testing::TestWithParam<Touch> {
       const std::string bytes = bytes_of(file.path);
       const std::vector<std::uint8_t> saved(bytes.begin(), bytes.end());
       watched.crossings.push_back(
-          referee_.crossings(saved_run(saved, model_->rest_positions.size()).state.positions));
+          referee_.crossings(from_checkpoint(saved, model_->rest_positions.size()).motion.positions));
     }
     EXPECT_EQ(watched.rows.size(), static_cast<std::size_t>(touch.steps) + 1);
     EXPECT_EQ(watched.crossings.size(), watched.rows.size());

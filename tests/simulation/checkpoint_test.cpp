@@ -5,32 +5,83 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
+#include "muslin/simulation/fingerprint.hpp"
 
 namespace muslin {
 namespace {
 
 std::vector<std::uint8_t> example() {
-  ByteWriter out({42, 7, 3, 10});
-  out.value(0.1);
-  out.values(std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
-  out.values(std::vector<std::uint8_t>{1, 0, 1});
-  out.text("flag");
+  CheckpointWriter out({42, 7, 3, 10});
+  out("length", 0.1);
+  out("positions", std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
+  out("held", std::vector<std::uint8_t>{1, 0, 1});
+  out("none", std::vector<double>());
   return std::move(out).finish();
 }
 
-TEST(Checkpoint, GivesBackWhatWasWritten) {
+TEST(Checkpoint, GivesBackWhatWasWrittenInAnyOrder) {
   const auto bytes = example();
   const CheckpointHeader header = read_checkpoint_header(bytes);
   EXPECT_EQ(header.fingerprint, 42u);
   EXPECT_EQ(header.frame, 7);
   EXPECT_EQ(header.steps, 3);
   EXPECT_EQ(header.steps_per_frame, 10);
-  ByteReader in(bytes);
-  EXPECT_EQ(in.value<double>(), 0.1);
-  EXPECT_EQ(in.values<Vec3>(), (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
-  EXPECT_EQ(in.values<std::uint8_t>(), (std::vector<std::uint8_t>{1, 0, 1}));
-  EXPECT_EQ(in.text(), "flag");
-  EXPECT_THROW(in.value<double>(), Error);
+  CheckpointReader in(bytes);
+  std::vector<std::uint8_t> held;
+  std::vector<Vec3> positions;
+  std::vector<double> none = {1, 2};
+  double length = 0;
+  in("held", held);
+  in("positions", positions);
+  in("none", none);
+  EXPECT_THROW(in.finish(), Error) << "nobody has asked for the length";
+  in("length", length);
+  EXPECT_NO_THROW(in.finish());
+  EXPECT_EQ(length, 0.1);
+  EXPECT_EQ(positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(held, (std::vector<std::uint8_t>{1, 0, 1}));
+  EXPECT_TRUE(none.empty());
+}
+
+TEST(Checkpoint, LeavesWhatWasNotWrittenAsItIs) {
+  const auto bytes = example();
+  CheckpointReader in(bytes);
+  double width = 3;
+  std::vector<Vec3> anchors = {{1, 2, 3}};
+  in("width", width);
+  in("anchors", anchors);
+  EXPECT_EQ(width, 3);
+  EXPECT_EQ(anchors.size(), 1U);
+}
+
+TEST(Checkpoint, RefusesOtherTypesAndManyForOne) {
+  const auto bytes = example();
+  CheckpointReader in(bytes);
+  std::int64_t whole = 0;
+  std::vector<double> numbers;
+  Vec3 one;
+  EXPECT_THROW(in("length", whole), Error);
+  EXPECT_THROW(in("positions", numbers), Error);
+  EXPECT_THROW(in("positions", one), Error);
+}
+
+TEST(Checkpoint, RefusesANameThatIsThereTwice) {
+  CheckpointWriter out({});
+  out("length", 0.1);
+  out("length", 0.2);
+  const auto bytes = std::move(out).finish();
+  EXPECT_THROW(CheckpointReader{bytes}, Error);
+}
+
+TEST(Checkpoint, RefusesAnOlderFormatByItsNumber) {
+  auto bytes = example();
+  bytes[8] = 3;
+  try {
+    read_checkpoint_header(bytes);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.problem(), "the checkpoint has format 3, this muslin reads 4");
+  }
 }
 
 TEST(Checkpoint, NoticesEveryDamagedByteAndEveryCut) {

@@ -119,26 +119,12 @@ TEST(Simulation, InterruptedInsideAFrameGoesOnFromTheStepReached) {
   }
 }
 
-/// Gives no finite energy beyond a height: no step can pass it, however short.
-class Wall : public test::ConstantForce {
- public:
-  explicit Wall(std::size_t count) : ConstantForce(std::vector<Vec3>(count, Vec3::Zero())) {}
-  double value(ConstVectors x) const override {
-    for (const Vec3& p : x)
-      if (p.y() < -0.05) return std::nan("");
-    return 0;
-  }
-  void add_gradient(ConstVectors x, Vectors g) const override {
-    for (std::size_t v = 0; v < x.size(); ++v)
-      if (x[v].y() < -0.05) g[v].setConstant(std::nan(""));
-  }
-};
-
 TEST(Simulation, StepThatCannotBeSolvedSaysWhereAndLeavesTheLastGoodState) {
   SmallModelOptions options;
   options.pinned = false;
   Model model = small_model(options);
-  model.potentials.push_back({"wall", EnergyRole::elastic, std::make_shared<Wall>(model.vertex_count())});
+  model.potentials.push_back(
+      {"wall", EnergyRole::elastic, std::make_shared<test::Wall>(model.vertex_count(), -0.05)});
   Simulation simulation(shared(std::move(model)));
   try {
     for (int frame = 0; frame < 24; ++frame) simulation.advance();

@@ -1,6 +1,7 @@
 // A flag of 3×2 voxels held at two corners, built by hand: for tests of runs that need no scene file.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,25 @@ class ConstantForce : public Potential {
 
  private:
   std::vector<Vec3> forces_;
+};
+
+/// Gives no finite energy beneath a height [m]: no step can pass it, however short.
+class Wall : public ConstantForce {
+ public:
+  Wall(std::size_t count, double height)
+      : ConstantForce(std::vector<Vec3>(count, Vec3::Zero())), height_(height) {}
+  double value(ConstVectors x) const override {
+    for (const Vec3& p : x)
+      if (p.y() < height_) return std::nan("");
+    return 0;
+  }
+  void add_gradient(ConstVectors x, Vectors g) const override {
+    for (std::size_t v = 0; v < x.size(); ++v)
+      if (x[v].y() < height_) g[v].setConstant(std::nan(""));
+  }
+
+ private:
+  double height_;
 };
 
 /// A force between two times.

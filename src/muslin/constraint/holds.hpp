@@ -18,6 +18,12 @@ struct Holds {
                                       ///< points if it has a sequence; all pins one after the other [m];
                                       ///< meaningful where the pin is holding
 
+  template <class Self, class Arrays>
+  static void name_arrays(Self& self, Arrays& arrays) {
+    arrays("holds.holding", self.holding);
+    arrays("holds.anchors", self.anchors);
+  }
+
   /// Decides the step from `time_begin`, when the vertices are at `positions`, to `time_end`.
   /// fixed[v] = 1 where v is held at the end of the step, and targets[v] is then its place; elsewhere
   /// fixed[v] = 0 and targets[v] is positions[v].

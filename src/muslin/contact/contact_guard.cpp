@@ -68,8 +68,21 @@ StepLimits limits_of(const ContactModel& model) {
 
 }  // namespace
 
-ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model)
+void require_fit(const ContactMemory& memory, const ContactModel& model) {
+  const std::size_t points = model.map->point_count();
+  const auto triangles = static_cast<int>(model.surface->triangles().size());
+  const bool fits =
+      memory.begin.size() == memory.end.size() && (memory.begin.empty() || memory.begin.size() == points) &&
+      std::all_of(memory.tangled.begin(), memory.tangled.end(), [&](const std::array<int, 2>& pair) {
+        return pair[0] >= 0 && pair[0] < triangles && pair[1] >= 0 && pair[1] < triangles;
+      });
+  if (!fits)
+    throw Error(ErrorKind::input, "the checkpoint's contact belongs to other surfaces", "start the run anew");
+}
+
+ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMemory& memory)
     : model_(std::move(model)),
+      memory_(memory),
       candidates_(model_->surface, model_->rest, model_->distance),
       distances_(candidates_),
       limiter_(model_->map, limits_of(*model_)),
@@ -85,6 +98,9 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model)
         static_cast<int>(model_->map->vertex_count()))
       throw Error(ErrorKind::usage, "a body's frame has a vertex that does not exist", "check the indices");
   }
+  require_fit(memory_, *model_);
+  candidates_.leave_free(memory_.tangled);
+  find_again();
 }
 
 void ContactGuard::begin(ConstVectors q, double length, std::span<const std::uint8_t> held) {
@@ -248,13 +264,13 @@ void ContactGuard::end(ConstVectors q) {
   memory_.slips = potential_->slips(q);
   measure(q);
   memory_.smallest_gap = distances_.smallest_gap();
-  if (!tangled_.empty()) leave_tangled(q);
+  if (!memory_.tangled.empty()) leave_tangled(q);
   // What is free is no candidate. Where triangles cross their distance is 0.
   const ContactSurface& surface = *model_->surface;
   const auto radius = [&](int t) {
     return surface.radius_of(surface.triangles()[static_cast<std::size_t>(t)][0]);
   };
-  for (const auto& [first, second] : tangled_)
+  for (const auto& [first, second] : memory_.tangled)
     memory_.smallest_gap = std::min(memory_.smallest_gap, 0.0 - (radius(first) + radius(second)));
   forget_renewed();
 }
@@ -278,17 +294,9 @@ std::vector<std::array<int, 2>> ContactGuard::crossing(ConstVectors q) {
 
 void ContactGuard::leave_tangled(ConstVectors q) {
   std::vector<std::array<int, 2>> now = crossing(q);
-  if (now == tangled_) return;
-  tangled_ = std::move(now);
-  candidates_.leave_free(tangled_);
-  find_again();
-}
-
-void ContactGuard::restore(ContactMemory memory) {
-  const std::size_t points = model_->map->point_count();
-  if (memory.begin.size() != memory.end.size() || (!memory.begin.empty() && memory.begin.size() != points))
-    throw Error(ErrorKind::input, "the checkpoint's contact belongs to other surfaces", "start the run anew");
-  memory_ = std::move(memory);
+  if (now == memory_.tangled) return;
+  memory_.tangled = std::move(now);
+  candidates_.leave_free(memory_.tangled);
   find_again();
 }
 

@@ -1,34 +1,22 @@
-// Contact of a run: joins search, limiter and energy into the guard that the solver asks, and remembers from
-// step to step what sticks.
+// Contact of a run: joins search, limiter and energy into the guard that the solver asks. What lasts from
+// step to step lies in a ContactMemory; the guard itself can be thrown away between steps.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "muslin/contact/contact_candidates.hpp"
+#include "muslin/contact/contact_memory.hpp"
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/contact_potential.hpp"
 #include "muslin/contact/step_limiter.hpp"
 #include "muslin/potential/step_guard.hpp"
 
 namespace muslin {
-
-/// What contact remembers between steps, besides positions: a run that goes on with it gives the same bits.
-struct ContactMemory {
-  std::vector<PairSlip> slips;  ///< by ascending key
-  std::vector<Vec3> begin,
-      end;               ///< what candidates were found for, #P by 3 [m]; empty: they must be found anew
-  double margin = 0;     ///< by which their boxes are wider [m]
-  double smallest_gap =  ///< at the end of the last step [m]; infinite beyond d̂; −thickness
-                         ///< where triangles cross
-      std::numeric_limits<double>::infinity();
-};
 
 /// What a guard has done since it was made.
 struct ContactCounts {
@@ -39,9 +27,15 @@ struct ContactCounts {
   double search_seconds = 0, limit_seconds = 0, potential_seconds = 0;
 };
 
+/// Throws Error(input) if `memory` is of other surfaces than the model's.
+void require_fit(const ContactMemory& memory, const ContactModel& model);
+
 class ContactGuard : public StepGuard {
  public:
-  explicit ContactGuard(std::shared_ptr<const ContactModel> model);
+  /// Goes on from `memory`, writes to it, and is as good as a guard that made it: the next step gives the
+  /// same bits. The memory outlives the guard, and nobody else changes it in the meantime. Errors: input, if
+  /// it is of another surface.
+  ContactGuard(std::shared_ptr<const ContactModel> model, ContactMemory& memory);
 
   void begin(ConstVectors q, double length, std::span<const std::uint8_t> held) override;
   double resolution() const override { return edge_; }
@@ -54,14 +48,11 @@ class ContactGuard : public StepGuard {
   /// crossing, others beside them may begin to; once none is, nothing ever crosses again.
   void leave_tangled(ConstVectors q);
   /// How many pairs of triangles cross still, of those left free.
-  std::size_t tangled() const { return tangled_.size(); }
+  std::size_t tangled() const { return memory_.tangled.size(); }
 
   /// The potential asked for last.
   const ContactPotential& last_potential() const { return *potential_; }
   const ContactMemory& memory() const { return memory_; }
-  /// Errors: input, if it is of another surface.
-  void restore(ContactMemory memory);
-  void restore_slips(std::vector<PairSlip> slips) { memory_.slips = std::move(slips); }
   const ContactCounts& counts() const { return counts_; }
 
  private:
@@ -77,6 +68,7 @@ class ContactGuard : public StepGuard {
   void shorten(Vectors d) const;
 
   std::shared_ptr<const ContactModel> model_;
+  ContactMemory& memory_;
   ContactCandidates candidates_;
   PairDistances distances_;
   StepLimiter limiter_;
@@ -86,11 +78,9 @@ class ContactGuard : public StepGuard {
   double longest_;       ///< displacement that is limited in one piece [m]
   double longest_push_;  ///< the same of what pushes others along keyframes
   Friction friction_;
-  std::vector<std::array<int, 2>> tangled_;
   std::vector<Vec3> start_;  ///< q where the step began
   std::vector<std::uint8_t> held_;
   std::optional<ContactPotential> potential_;
-  ContactMemory memory_;
   ContactCounts counts_;
   std::vector<Vec3> x_, to_, piece_;
   std::vector<std::uint8_t> outside_;  ///< points that leave the boxes of the candidates

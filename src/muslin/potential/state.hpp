@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// The whole moving state of all bodies, shape #V by 3 each. Saved and restored bit for bit.
+/// How all bodies are and move, shape #V by 3 each. Saved and restored bit for bit.
 struct State {
   std::vector<Vec3> positions;            ///< [m]
   std::vector<Vec3> velocities;           ///< [m/s]
@@ -17,6 +17,17 @@ struct State {
   double previous_dt = 0;                 ///< length of the step that led here [s], 0 before the first
   double time = 0;                        ///< [s]
   std::int64_t step = 0;
+
+  template <class Self, class Arrays>
+  static void name_arrays(Self& self, Arrays& arrays) {
+    arrays("positions", self.positions);
+    arrays("velocities", self.velocities);
+    arrays("previous_positions", self.previous_positions);
+    arrays("previous_velocities", self.previous_velocities);
+    arrays("previous_dt", self.previous_dt);
+    arrays("time", self.time);
+    arrays("step", self.step);
+  }
 };
 
 /// A step from time_begin to time_end. Integrators differ only in `anchor` and `dt`: velocities at the end

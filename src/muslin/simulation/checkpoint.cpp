@@ -1,15 +1,19 @@
 #include "muslin/simulation/checkpoint.hpp"
 
 #include <array>
-#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/simulation/fingerprint.hpp"
 
 namespace muslin {
 namespace {
 
 constexpr std::array<char, 8> magic = {'M', 'U', 'S', 'L', 'I', 'N', 'C', 'P'};
-constexpr std::uint64_t version = 3;
+constexpr std::uint64_t version = 4;
 
 struct Preamble {
   std::array<char, 8> magic;
@@ -22,58 +26,26 @@ struct Preamble {
               "resume from an earlier checkpoint or start the run anew");
 }
 
+/// Takes values off the front of `rest`.
+std::span<const std::uint8_t> take(std::span<const std::uint8_t>& rest, std::uint64_t size) {
+  if (size > rest.size()) damaged("it ends too early");
+  const auto taken = rest.first(static_cast<std::size_t>(size));
+  rest = rest.subspan(taken.size());
+  return taken;
+}
+
+std::uint64_t take_number(std::span<const std::uint8_t>& rest) {
+  std::uint64_t number = 0;
+  std::memcpy(&number, take(rest, sizeof number).data(), sizeof number);
+  return number;
+}
+
+std::string take_text(std::span<const std::uint8_t>& rest) {
+  const auto bytes = take(rest, take_number(rest));
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace
-
-std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed) {
-  // FNV-1a over words of eight bytes, with a final mix (Murmur3's) so that every input bit reaches every
-  // output bit.
-  std::uint64_t hash = 0xcbf29ce484222325ULL ^ seed;
-  const auto* bytes = static_cast<const unsigned char*>(data);
-  const auto stir = [&hash](std::uint64_t word) {
-    hash = (hash ^ word) * 0x100000001b3ULL;
-    hash ^= hash >> 29;
-  };
-  std::size_t i = 0;
-  for (; i + 8 <= size; i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes + i, 8);
-    stir(word);
-  }
-  std::uint64_t tail = size;
-  for (; i < size; ++i) tail = (tail << 8) | bytes[i];
-  stir(tail);
-  hash = (hash ^ (hash >> 33)) * 0xff51afd7ed558ccdULL;
-  hash = (hash ^ (hash >> 33)) * 0xc4ceb9fe1a85ec53ULL;
-  return hash ^ (hash >> 33);
-}
-
-std::uint64_t model_fingerprint(const Model& model) {
-  std::uint64_t hash = hash_bytes(model.masses.data(), model.masses.size() * sizeof(double));
-  hash = hash_bytes(model.rest_positions.data(), model.rest_positions.size() * sizeof(Vec3), hash);
-  for (const Body& body : model.bodies) {
-    hash = hash_bytes(body.name.data(), body.name.size(), hash);
-    const std::array<std::int64_t, 3> shape = {body.first_vertex, body.vertex_count, body.springs.count};
-    hash = hash_bytes(shape.data(), sizeof shape, hash);
-    if (!body.is_shell()) continue;
-    hash = hash_bytes(body.shell.triangles.data(), body.shell.triangles.size() * sizeof(Vec3i), hash);
-    hash = hash_bytes(body.shell.inverses.data(), body.shell.inverses.size() * sizeof(Mat2), hash);
-    hash = hash_bytes(body.shell.hinges.data(), body.shell.hinges.size() * sizeof(Hinge), hash);
-  }
-  for (const BodySettings& body : model.scene.bodies) {
-    const Material& m = body.material;
-    const std::array<double, 8> numbers = {m.density,
-                                           m.edge_modulus,
-                                           m.face_diagonal_modulus,
-                                           m.body_diagonal_modulus,
-                                           m.volume_modulus,
-                                           m.mass_damping,
-                                           m.stiffness_damping,
-                                           static_cast<double>(body.boundary_springs)};
-    hash = hash_bytes(numbers.data(), sizeof numbers, hash);
-    if (body.model == BodyModel::shell) hash = hash_bytes(&*m.shell, sizeof *m.shell, hash);
-  }
-  return hash;
-}
 
 CheckpointHeader read_checkpoint_header(std::span<const std::uint8_t> bytes) {
   Preamble preamble{};
@@ -95,44 +67,80 @@ CheckpointHeader read_checkpoint_header(std::span<const std::uint8_t> bytes) {
   return preamble.header;
 }
 
-ByteWriter::ByteWriter(const CheckpointHeader& header) { value(Preamble{magic, version, header}); }
+CheckpointWriter::CheckpointWriter(const CheckpointHeader& header) {
+  const Preamble preamble{magic, version, header};
+  append(&preamble, sizeof preamble);
+}
 
-void ByteWriter::append(const void* data, std::size_t size) {
+void CheckpointWriter::append(const void* data, std::size_t size) {
   const auto* bytes = static_cast<const std::uint8_t*>(data);
   bytes_.insert(bytes_.end(), bytes, bytes + size);
 }
 
-void ByteWriter::text(const std::string& text) {
-  value(static_cast<std::uint64_t>(text.size()));
+void CheckpointWriter::append(std::string_view text) {
+  const std::uint64_t size = text.size();
+  append(&size, sizeof size);
   append(text.data(), text.size());
 }
 
-std::vector<std::uint8_t> ByteWriter::finish() && {
-  value(hash_bytes(bytes_.data(), bytes_.size()));
+void CheckpointWriter::append(std::string_view name, std::string_view layout, std::uint64_t element_size,
+                              const void* data, std::uint64_t count) {
+  append(name);
+  append(layout);
+  append(&element_size, sizeof element_size);
+  append(&count, sizeof count);
+  append(data, count * element_size);
+}
+
+std::vector<std::uint8_t> CheckpointWriter::finish() && {
+  const std::uint64_t checksum = hash_bytes(bytes_.data(), bytes_.size());
+  append(&checksum, sizeof checksum);
   return std::move(bytes_);
 }
 
-ByteReader::ByteReader(std::span<const std::uint8_t> bytes) {
-  read_checkpoint_header(bytes);
-  rest_ = bytes.subspan(sizeof(Preamble), bytes.size() - sizeof(Preamble) - sizeof(std::uint64_t));
+CheckpointReader::CheckpointReader(std::span<const std::uint8_t> bytes)
+    : header_(read_checkpoint_header(bytes)) {
+  auto rest = bytes.subspan(sizeof(Preamble), bytes.size() - sizeof(Preamble) - sizeof(std::uint64_t));
+  while (!rest.empty()) {
+    std::string name = take_text(rest);
+    Record record;
+    record.layout = take_text(rest);
+    record.element_size = take_number(rest);
+    record.count = take_number(rest);
+    if (record.element_size == 0 || record.count > rest.size() / record.element_size)
+      damaged("it ends too early");
+    record.bytes = take(rest, record.count * record.element_size);
+    if (!records_.emplace(name, std::move(record)).second) damaged(fmt::format("it has \"{}\" twice", name));
+  }
 }
 
-void ByteReader::require(std::uint64_t count, std::size_t size) const {
-  if (count > rest_.size() / size) damaged("it ends too early");
+const CheckpointReader::Record* CheckpointReader::find(std::string_view name, std::string_view layout,
+                                                       std::size_t element_size) {
+  const auto found = records_.find(name);
+  if (found == records_.end()) return nullptr;
+  Record& record = found->second;
+  if (record.layout != layout || record.element_size != element_size)
+    damaged(fmt::format("its \"{}\" is {} of {} bytes instead of {} of {}", name, record.layout,
+                        record.element_size, layout, element_size));
+  record.read = true;
+  return &record;
 }
 
-void ByteReader::take(void* data, std::size_t size) {
-  require(size, 1);
-  if (size > 0) std::memcpy(data, rest_.data(), size);
-  rest_ = rest_.subspan(size);
+void CheckpointReader::require_one(std::string_view name, const Record& record) {
+  if (record.count != 1) damaged(fmt::format("its \"{}\" has {} values instead of one", name, record.count));
 }
 
-std::string ByteReader::text() {
-  const auto size = value<std::uint64_t>();
-  require(size, 1);
-  std::string result(size, '\0');
-  take(result.data(), size);
-  return result;
+void CheckpointReader::copy(const Record& record, void* to) {
+  if (!record.bytes.empty()) std::memcpy(to, record.bytes.data(), record.bytes.size());
+}
+
+void CheckpointReader::finish() const {
+  for (const auto& [name, record] : records_) {
+    if (record.read) continue;
+    throw Error(ErrorKind::input,
+                fmt::format("the checkpoint has \"{}\", which this muslin does not know", name),
+                "resume with the version that wrote it, or start the run anew");
+  }
 }
 
 }  // namespace muslin

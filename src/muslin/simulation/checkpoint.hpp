@@ -1,16 +1,19 @@
-// The bytes of a checkpoint: a header that can be read without the model, values in the machine's (little)
-// byte order, and a checksum over everything before it.
+// The bytes of a checkpoint: a header that can be read without the model, named arrays (name, layout of an
+// element, its size, how many, the elements) in the machine's (little) byte order, and a checksum over
+// everything before it. The structs of the state name their arrays (potential/state_arrays.hpp).
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
-#include <type_traits>
+#include <string_view>
 #include <vector>
 
-#include "muslin/scene/model.hpp"
+#include "muslin/potential/state_arrays.hpp"
 
 namespace muslin {
 
@@ -27,60 +30,70 @@ struct CheckpointHeader {
 /// Throws Error(input) if the bytes are no checkpoint, of another version, cut off or damaged.
 CheckpointHeader read_checkpoint_header(std::span<const std::uint8_t> bytes);
 
-/// A 64-bit hash of the bytes (not cryptographic), the same on every machine.
-std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
-
-/// Hash of what a state must fit: the vertices at rest, their masses, and the bodies' lattices and
-/// materials. Pins, loads, times and solver settings are not in it: a run may go on with others.
-std::uint64_t model_fingerprint(const Model& model);
-
-/// Appends values to a checkpoint.
-class ByteWriter {
+/// Writes arrays to a checkpoint, each under a name of its own.
+class CheckpointWriter {
  public:
-  explicit ByteWriter(const CheckpointHeader& header);
-  template <class Value>
-  void value(const Value& value) {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    append(&value, sizeof value);
+  explicit CheckpointWriter(const CheckpointHeader& header);
+  template <class Element>
+  void operator()(std::string_view name, const std::vector<Element>& array) {
+    append(name, ArrayElement<Element>::layout, sizeof(Element), array.data(), array.size());
   }
-  template <class Value>
-  void values(const std::vector<Value>& values) {
-    value(static_cast<std::uint64_t>(values.size()));
-    append(values.data(), values.size() * sizeof(Value));
+  template <class Element>
+  void operator()(std::string_view name, const Element& value) {
+    append(name, ArrayElement<Element>::layout, sizeof(Element), &value, 1);
   }
-  void text(const std::string& text);
   /// The finished checkpoint.
   std::vector<std::uint8_t> finish() &&;
 
  private:
   void append(const void* data, std::size_t size);
+  void append(std::string_view text);
+  void append(std::string_view name, std::string_view layout, std::uint64_t element_size, const void* data,
+              std::uint64_t count);
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Takes values back in the same order; throws Error(input) if they run out.
-class ByteReader {
+/// Gives arrays back by their names; the bytes must outlive it.
+class CheckpointReader {
  public:
-  explicit ByteReader(std::span<const std::uint8_t> bytes);
-  template <class Value>
-  Value value() {
-    Value result;
-    take(&result, sizeof result);
-    return result;
+  /// Errors: those of read_checkpoint_header; input, if the arrays are damaged.
+  explicit CheckpointReader(std::span<const std::uint8_t> bytes);
+
+  const CheckpointHeader& header() const { return header_; }
+
+  /// Fills `array` with what was written under `name`; leaves it as it is if nothing was. Errors: input, if
+  /// elements of another layout were written, or not one value where one is wanted.
+  template <class Element>
+  void operator()(std::string_view name, std::vector<Element>& array) {
+    const Record* record = find(name, ArrayElement<Element>::layout, sizeof(Element));
+    if (!record) return;
+    array.resize(record->count);
+    copy(*record, array.data());
   }
-  template <class Value>
-  std::vector<Value> values() {
-    const auto count = value<std::uint64_t>();
-    require(count, sizeof(Value));
-    std::vector<Value> result(count);
-    take(result.data(), count * sizeof(Value));
-    return result;
+  template <class Element>
+  void operator()(std::string_view name, Element& value) {
+    const Record* record = find(name, ArrayElement<Element>::layout, sizeof(Element));
+    if (!record) return;
+    require_one(name, *record);
+    copy(*record, &value);
   }
-  std::string text();
+  /// Throws Error(input) if there are arrays that nobody asked for: what a later muslin remembers, without
+  /// which the run would go on otherwise.
+  void finish() const;
 
  private:
-  void require(std::uint64_t count, std::size_t size) const;
-  void take(void* data, std::size_t size);
-  std::span<const std::uint8_t> rest_;
+  struct Record {
+    std::string layout;
+    std::uint64_t element_size = 0, count = 0;
+    std::span<const std::uint8_t> bytes;
+    bool read = false;
+  };
+  const Record* find(std::string_view name, std::string_view layout, std::size_t element_size);
+  static void require_one(std::string_view name, const Record& record);
+  static void copy(const Record& record, void* to);
+
+  CheckpointHeader header_;
+  std::map<std::string, Record, std::less<>> records_;
 };
 
 }  // namespace muslin

@@ -10,44 +10,10 @@
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/state.hpp"
 #include "muslin/scene/model.hpp"
+#include "muslin/simulation/diagnostics.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
-
-/// One row of diagnostics.csv. Energies in joule, momentum in kg·m/s, over all bodies. The balance
-/// kinetic + elastic + potential − work + dissipated stays what it was at frame 0, up to the solver's
-/// residual (docs/theory/energy-balance.md).
-struct Diagnostics {
-  int frame = 0;
-  double time = 0;
-  double kinetic = 0, elastic = 0, potential = 0;
-  double work = 0;        ///< done from outside since the start (forces, wind, moving pins)
-  double dissipated = 0;  ///< lost since the start: damping and the integrator's own
-  Vec3 momentum = Vec3::Zero();
-  int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
-  double residual = 0;                               ///< largest of this frame [m/s²]
-  double max_stretch = 1;  ///< largest length / rest length of a spring, or of a shell in any direction
-  /// Work of what is out of balance at free vertices since the start: the steps' residual forces times
-  /// displacements [J]. By that much balance() has changed.
-  double unbalanced = 0;
-  /// Smallest gap between surfaces, thickness taken off, at the ends of all steps of the frame [m]; infinity
-  /// where it is more than the contact distance, or nothing can touch. Not above 0 only while something is
-  /// still as it was in a start that was allowed to be tangled: where triangles cross, at distance 0, it is
-  /// −thickness, in a ball or beneath a plane minus the depth.
-  double min_distance = 0;
-  int held_back = 0;   ///< vertices moved along keyframes that something in their way holds back
-  double wall_ms = 0;  ///< time this frame took
-
-  double balance() const { return kinetic + elastic + potential - work + dissipated; }
-};
-
-/// Where the time of a run with contact went, since it was made or restored.
-struct RunCosts {
-  double search = 0, limit = 0, contact = 0;  ///< finding candidates, limiting steps, contact potentials [s]
-  double linearize = 0, solve = 0;            ///< Hessians and their factors, linear systems [s]
-  std::int64_t searches = 0, limits = 0;      ///< how many
-  std::int64_t deflected = 0, shortened = 0;  ///< vertices, summed over limits
-};
 
 struct SimulationOptions {
   /// Start although surfaces cross: these are left free of each other until they part.
@@ -64,7 +30,7 @@ class Simulation {
 
   const Model& model() const;
   const SimulationOptions& options() const;
-  const State& state() const;
+  const State& state() const;              ///< how all bodies are and move
   int frame() const;                       ///< the last finished frame
   int steps_done() const;                  ///< steps of the frame in work; 0 unless it was interrupted
   const Diagnostics& diagnostics() const;  ///< of the last finished frame
@@ -98,9 +64,12 @@ class Simulation {
   std::vector<std::uint8_t> checkpoint() const;
   void restore(const std::vector<std::uint8_t>& bytes);
 
+  /// Drops every workspace: the next step makes them again. Results do not change.
+  void forget_scratch();
+
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace muslin

@@ -1,0 +1,44 @@
+// The memory of contact from step to step.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "muslin/contact/contact_potential.hpp"
+#include "muslin/core/vectors.hpp"
+#include "muslin/potential/state_arrays.hpp"
+
+namespace muslin {
+
+template <>
+struct ArrayElement<PairSlip> {
+  static constexpr std::string_view layout = "u64 f64x3";
+};
+
+/// Contact keeps this between steps, besides positions: a run that goes on with it gives the same bits.
+struct ContactMemory {
+  std::vector<PairSlip> slips;  ///< by ascending key
+  std::vector<Vec3> begin,
+      end;               ///< what candidates were found for, #P by 3 [m]; empty: they must be found anew
+  double margin = 0;     ///< by which their boxes are wider [m]
+  double smallest_gap =  ///< at the end of the last step [m]; infinite beyond d̂; −thickness
+                         ///< where triangles cross
+      std::numeric_limits<double>::infinity();
+  /// Pairs of triangles that cross still, of a start that was allowed to: their features are free of each
+  /// other.
+  std::vector<std::array<int, 2>> tangled;
+
+  template <class Self, class Arrays>
+  static void name_arrays(Self& self, Arrays& arrays) {
+    arrays("contact.slips", self.slips);
+    arrays("contact.candidates_begin", self.begin);
+    arrays("contact.candidates_end", self.end);
+    arrays("contact.candidates_margin", self.margin);
+    arrays("contact.smallest_gap", self.smallest_gap);
+    arrays("contact.tangled", self.tangled);
+  }
+};
+
+}  // namespace muslin

@@ -1,0 +1,88 @@
+// A run tells about itself: one row a frame, and where its time went.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/scene/model.hpp"
+
+namespace muslin {
+
+/// One row of diagnostics.csv. Energies in joule, momentum in kg·m/s, over all bodies. The balance
+/// kinetic + elastic + potential − work + dissipated stays what it was at frame 0, up to the solver's
+/// residual (docs/theory/energy-balance.md).
+struct Diagnostics {
+  int frame = 0;
+  double time = 0;
+  double kinetic = 0, elastic = 0, potential = 0;
+  double work = 0;        ///< done from outside since the start (forces, wind, moving pins)
+  double dissipated = 0;  ///< lost since the start: damping and the integrator's own
+  Vec3 momentum = Vec3::Zero();
+  int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
+  double residual = 0;                               ///< largest of this frame [m/s²]
+  double max_stretch = 1;  ///< largest length / rest length of a spring, or of a shell in any direction
+  /// Work of what is out of balance at free vertices since the start: the steps' residual forces times
+  /// displacements [J]. By that much balance() has changed.
+  double unbalanced = 0;
+  /// Smallest gap between surfaces, thickness taken off, at the ends of all steps of the frame [m]; infinity
+  /// where it is more than the contact distance, or nothing can touch. Not above 0 only while something is
+  /// still as it was in a start that was allowed to be tangled: where triangles cross, at distance 0, it is
+  /// −thickness, in a ball or beneath a plane minus the depth.
+  double min_distance = 0;
+  int held_back = 0;   ///< vertices moved along keyframes that something in their way holds back
+  double wall_ms = 0;  ///< time this frame took
+
+  double balance() const { return kinetic + elastic + potential - work + dissipated; }
+
+  /// All but wall_ms, which no two runs share.
+  template <class Self, class Arrays>
+  static void name_arrays(Self& self, Arrays& arrays) {
+    arrays("diagnostics.frame", self.frame);
+    arrays("diagnostics.time", self.time);
+    arrays("diagnostics.kinetic", self.kinetic);
+    arrays("diagnostics.elastic", self.elastic);
+    arrays("diagnostics.potential", self.potential);
+    arrays("diagnostics.work", self.work);
+    arrays("diagnostics.dissipated", self.dissipated);
+    arrays("diagnostics.momentum", self.momentum);
+    arrays("diagnostics.newton_iterations", self.newton_iterations);
+    arrays("diagnostics.linear_iterations", self.linear_iterations);
+    arrays("diagnostics.residual", self.residual);
+    arrays("diagnostics.max_stretch", self.max_stretch);
+    arrays("diagnostics.unbalanced", self.unbalanced);
+    arrays("diagnostics.min_distance", self.min_distance);
+    arrays("diagnostics.held_back", self.held_back);
+  }
+};
+
+/// Counted in the frame in work so far.
+struct FrameCounts {
+  std::int64_t newton = 0, linear = 0;                            ///< iterations
+  double residual = 0;                                            ///< the largest [m/s²]
+  double smallest_gap = std::numeric_limits<double>::infinity();  ///< at the ends of its steps [m]
+  int held_back = 0;                                              ///< vertices, at the end of the last step
+
+  template <class Self, class Arrays>
+  static void name_arrays(Self& self, Arrays& arrays) {
+    arrays("frame.newton_iterations", self.newton);
+    arrays("frame.linear_iterations", self.linear);
+    arrays("frame.residual", self.residual);
+    arrays("frame.smallest_gap", self.smallest_gap);
+    arrays("frame.held_back", self.held_back);
+  }
+};
+
+/// Where the time of a run with contact went, since it was made.
+struct RunCosts {
+  double search = 0, limit = 0, contact = 0;  ///< finding candidates, limiting steps, contact potentials [s]
+  double linearize = 0, solve = 0;            ///< Hessians and their factors, linear systems [s]
+  std::int64_t searches = 0, limits = 0;      ///< how many
+  std::int64_t deflected = 0, shortened = 0;  ///< vertices, summed over limits
+};
+
+/// The largest ratio of length and rest length in all bodies at x (#V by 3 [m]): of a spring, or of a shell
+/// in any direction. 1 without bodies.
+double max_stretch(const Model& model, ConstVectors x);
+
+}  // namespace muslin

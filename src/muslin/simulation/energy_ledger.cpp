@@ -1,0 +1,106 @@
+#include "muslin/simulation/energy_ledger.hpp"
+
+#include <utility>
+
+#include "muslin/simulation/fingerprint.hpp"
+
+namespace muslin {
+namespace {
+
+bool is_stored(EnergyRole role) { return role == EnergyRole::elastic || role == EnergyRole::potential; }
+
+}  // namespace
+
+std::vector<std::unique_ptr<Potential>> Terms::potentials_of_loads(const StepContext& context) const {
+  std::vector<std::unique_ptr<Potential>> found;
+  for (const LoadTerm& term : loads) found.push_back(term.load->potential(context));
+  return found;
+}
+
+std::vector<std::uint64_t> Terms::keys() const {
+  std::vector<std::uint64_t> keys;
+  for (const PotentialTerm& term : potentials) keys.push_back(hash_bytes(term.name.data(), term.name.size()));
+  for (const LoadTerm& term : loads) keys.push_back(hash_bytes(term.name.data(), term.name.size()));
+  return keys;
+}
+
+double EnergyLedger::sum(const Terms& acting, EnergyRole role) const {
+  double sum = 0;
+  for (std::size_t slot = 0; slot < stored.size(); ++slot)
+    if (acting.role(slot) == role) sum += stored[slot];
+  return sum;
+}
+
+void EnergyLedger::measure(const Terms& acting, const StepContext& context, ConstVectors positions) {
+  terms = acting.keys();
+  stored.clear();
+  for (const PotentialTerm& term : acting.potentials)
+    stored.push_back(is_stored(term.role) ? term.potential->value(positions) : 0.0);
+  for (const LoadTerm& term : acting.loads) {
+    const auto load = is_stored(term.role) ? term.load->potential(context) : nullptr;
+    stored.push_back(load ? load->value(positions) : 0.0);
+  }
+}
+
+void EnergyLedger::enter(const Terms& acting, SolvedStep step,
+                         std::span<const std::unique_ptr<Potential>> loads, const ContactPotential* contact,
+                         bool by_values) {
+  const std::vector<Vec3>&before = step.before->positions, &after = step.after->positions;
+  std::vector<ActingPotential> acts;
+  std::size_t slot = 0;
+  for (const PotentialTerm& term : acting.potentials) {
+    ActingPotential act{term.role, term.potential.get()};
+    if (is_stored(term.role)) {
+      const double now = term.potential->value(after);
+      if (by_values) act.gain = now - stored[slot];
+      stored[slot] = now;
+    }
+    acts.push_back(act);
+    ++slot;
+  }
+  for (std::size_t i = 0; i < loads.size(); ++i, ++slot) {
+    const EnergyRole role = acting.role(slot);
+    if (loads[i]) acts.push_back({role, loads[i].get()});
+    if (!is_stored(role)) continue;
+    // A field that is switched or turned while a body is in it does work on the body.
+    const double begin = loads[i] ? loads[i]->value(before) : 0.0;
+    work += begin - stored[slot];
+    stored[slot] = loads[i] ? loads[i]->value(after) : 0.0;
+  }
+  if (contact) {
+    const double now = contact->parts(after).normal;
+    acts.push_back({EnergyRole::elastic, contact, now - pressed});
+    pressed = now;
+  }
+  step.acts = acts;
+  const EnergyFlow flow = energy_flow(step);
+  work += flow.work;
+  dissipated += flow.dissipated;
+  unbalanced += flow.unbalanced;
+}
+
+void EnergyLedger::go_on_with(const Terms& acting, ConstVectors positions) {
+  const std::vector<std::uint64_t> earlier_terms = std::exchange(terms, acting.keys());
+  std::vector<double> earlier = std::exchange(stored, std::vector<double>(acting.size(), 0.0));
+  earlier.resize(earlier_terms.size());
+  std::vector<bool> used(earlier.size(), false);
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (std::size_t j = 0; j < earlier.size(); ++j) {
+      if (used[j] || earlier_terms[j] != terms[i]) continue;
+      used[j] = true;
+      stored[i] = earlier[j];
+      break;
+    }
+  }
+  // Energy that came or went because the scene was changed in between was put in or taken out from outside.
+  for (std::size_t j = 0; j < earlier.size(); ++j)
+    if (!used[j]) work -= earlier[j];
+  for (std::size_t i = 0; i < acting.potentials.size(); ++i) {
+    if (!is_stored(acting.potentials[i].role)) continue;
+    const double now = acting.potentials[i].potential->value(positions);
+    work += now - stored[i];
+    stored[i] = now;
+  }
+}
+
+}  // namespace muslin

@@ -1,0 +1,54 @@
+// A simulation's state as bytes, and back.
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/core/error.hpp"
+#include "muslin/simulation/fingerprint.hpp"
+#include "muslin/simulation/simulation_impl.hpp"
+
+namespace muslin {
+
+std::vector<std::uint8_t> Simulation::checkpoint() const {
+  const RunState& state = impl_->state;
+  return to_checkpoint(
+      {model_fingerprint(*impl_->model), state.frame, state.steps_done, impl_->time().steps_per_frame},
+      state);
+}
+
+void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
+  Impl& impl = *impl_;
+  const Model& model = *impl.model;
+  const CheckpointHeader header = read_checkpoint_header(bytes);
+  if (header.fingerprint != model_fingerprint(model)) {
+    throw Error(ErrorKind::input,
+                "the checkpoint belongs to other bodies: a mesh, a lattice or a material changed",
+                "undo the change, or start the run anew");
+  }
+  if (header.steps != 0 && header.steps_per_frame != impl.time().steps_per_frame) {
+    throw Error(ErrorKind::input,
+                fmt::format("the checkpoint lies inside a frame of {} steps, the scene now has {}",
+                            header.steps_per_frame, impl.time().steps_per_frame),
+                "resume from the checkpoint before it");
+  }
+  RunState state = from_checkpoint(bytes, model.vertex_count());
+  // Which triangles cross depends on the surfaces and the option, which may have changed.
+  state.contact.tangled.clear();
+  if (model.contact) {
+    impl.require_untangled(state.motion.positions);
+    require_fit(state.contact, *model.contact);
+  } else {
+    state.contact = {};
+    state.energy.work -= std::exchange(state.energy.pressed, 0.0);
+  }
+  go_on_with(model.pins, state);
+  state.energy.go_on_with(impl.terms(), state.motion.positions);
+
+  impl.scratch.forget();
+  impl.state = std::move(state);
+  impl.wall_ms = 0;
+  if (model.contact && impl.options.allow_tangled)
+    impl.scratch.guard(model, impl.state)->leave_tangled(impl.state.motion.positions);
+}
+
+}  // namespace muslin

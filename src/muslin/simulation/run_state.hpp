@@ -1,0 +1,69 @@
+// All of a run that changes, as one value. A step that fails is undone by a copy made before it, a checkpoint
+// holds all of it, and what is not in it is scratch.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "muslin/constraint/holds.hpp"
+#include "muslin/constraint/pin.hpp"
+#include "muslin/contact/contact_memory.hpp"
+#include "muslin/potential/state.hpp"
+#include "muslin/potential/state_arrays.hpp"
+#include "muslin/simulation/checkpoint.hpp"
+#include "muslin/simulation/diagnostics.hpp"
+#include "muslin/simulation/energy_ledger.hpp"
+
+namespace muslin {
+
+/// Identifies a pin across runs: its anchors make sense only for the same vertices, caught at the same time.
+struct PinKey {
+  std::uint64_t hash = 0;
+  std::uint64_t vertices = 0;
+  bool operator==(const PinKey&) const = default;
+};
+std::vector<PinKey> pin_keys(std::span<const Pin> pins);
+
+template <>
+struct ArrayElement<PinKey> {
+  static constexpr std::string_view layout = "u64x2";
+};
+
+/// Something new that changes is a member here, or of one of these structs, and a line in its name_arrays.
+struct RunState {
+  State motion;
+  int frame = 0;             ///< the last finished frame
+  int steps_done = 0;        ///< steps of the frame in work
+  std::vector<PinKey> pins;  ///< which `holds` is about
+  Holds holds;
+  ContactMemory contact;  ///< empty if nothing can touch
+  EnergyLedger energy;
+  FrameCounts counts;
+  Diagnostics diagnostics;  ///< of the last finished frame
+
+  template <class Self, class Arrays>
+  static void name_arrays(Self& self, Arrays& arrays) {
+    State::name_arrays(self.motion, arrays);
+    arrays("frame", self.frame);
+    arrays("steps_done", self.steps_done);
+    arrays("holds.pins", self.pins);
+    Holds::name_arrays(self.holds, arrays);
+    ContactMemory::name_arrays(self.contact, arrays);
+    EnergyLedger::name_arrays(self.energy, arrays);
+    FrameCounts::name_arrays(self.counts, arrays);
+    Diagnostics::name_arrays(self.diagnostics, arrays);
+  }
+};
+
+std::vector<std::uint8_t> to_checkpoint(const CheckpointHeader& header, const RunState& state);
+/// An array that the checkpoint does not hold is as in a RunState newly made. Errors: input, if the bytes are
+/// no whole checkpoint, hold what is not known, or are of another number of vertices.
+RunState from_checkpoint(std::span<const std::uint8_t> bytes, std::size_t vertices);
+
+/// Goes on with other pins: every pin that was there keeps its anchors; a new one takes hold in its first
+/// step.
+void go_on_with(std::span<const Pin> pins, RunState& state);
+
+}  // namespace muslin
