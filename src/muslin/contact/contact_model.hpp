@@ -12,19 +12,12 @@
 
 namespace muslin {
 
-/// How the steps of a scene with contact are solved. Nothing crosses in either.
-enum class ContactMode {
-  fast,       ///< small steps, a fixed small number of iterations each
-  converged,  ///< to the solver's tolerance
-};
-
 struct ContactModel {
   std::shared_ptr<const ContactSurface> surface;
   std::shared_ptr<const SurfaceMap> map;  ///< the surface's points from all vertices of the model
   std::vector<Vec3> rest;                 ///< #P by 3, points of the surface at rest [m]
   double distance = 2e-3;                 ///< d̂, the gap below which contact acts [m]
   double friction = 0;                    ///< Coulomb's μ of bodies without one of their own
-  ContactMode mode = ContactMode::fast;
   StepLimits limits;  ///< gap floor; which vertices are prescribed, which move as one
   // For messages; may be empty.
   std::vector<std::string> names;  ///< of the surface's bodies

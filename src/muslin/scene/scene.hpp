@@ -29,10 +29,11 @@ namespace muslin {
 struct TimeSettings {
   double duration = 2;     ///< [s]
   double frame_rate = 24;  ///< [1/s]
-  int steps_per_frame = 10;
+  std::optional<int> steps_per_frame;  ///< none: chosen by the program as the motion needs them
 
   int frames() const;  ///< last frame number; frame 0 is the start
-  double step() const { return 1.0 / (frame_rate * steps_per_frame); }  ///< [s]
+  /// The step of a fixed number a frame; the longest one otherwise [s].
+  double step() const { return 1.0 / (frame_rate * steps_per_frame.value_or(1)); }
 };
 
 /// What a body's degrees of freedom are.
@@ -139,7 +140,6 @@ struct ContactSettings {
   bool given = false;              ///< whether the scene has the table
   std::optional<double> distance;  ///< d̂ [m]; default: see build_contact.hpp
   double friction = 0.3;           ///< Coulomb's μ, of what has none of its own
-  ContactMode mode = ContactMode::fast;
   Place place;
 };
 

@@ -31,6 +31,11 @@ struct Diagnostics {
   /// −thickness, in a ball or beneath a plane minus the depth.
   double min_distance = 0;
   int held_back = 0;   ///< vertices moved along keyframes that something in their way holds back
+  int steps = 0;            ///< of this frame
+  int converged_steps = 0;  ///< of these, how many ended within their tolerance
+  double error = 0;         ///< largest estimate of what a step of this frame left unsolved, as motion [m]
+  int crossings = 0;        ///< pairs of triangles that cross, in a start that was allowed to be tangled
+  double penetration = 0;   ///< how deep the deepest of these, or what is inside a collider, is [m]
   double wall_ms = 0;  ///< time this frame took
 
   double balance() const { return kinetic + elastic + potential - work + dissipated; }
@@ -53,6 +58,11 @@ struct Diagnostics {
     arrays("diagnostics.unbalanced", self.unbalanced);
     arrays("diagnostics.min_distance", self.min_distance);
     arrays("diagnostics.held_back", self.held_back);
+    arrays("diagnostics.steps", self.steps);
+    arrays("diagnostics.converged_steps", self.converged_steps);
+    arrays("diagnostics.error", self.error);
+    arrays("diagnostics.crossings", self.crossings);
+    arrays("diagnostics.penetration", self.penetration);
   }
 };
 
@@ -62,6 +72,8 @@ struct FrameCounts {
   double residual = 0;                                            ///< the largest [m/s²]
   double smallest_gap = std::numeric_limits<double>::infinity();  ///< at the ends of its steps [m]
   int held_back = 0;                                              ///< vertices, at the end of the last step
+  int steps = 0, converged_steps = 0;                             ///< made, and within their tolerance
+  double error = 0;                                               ///< the largest estimate [m]
 
   template <class Self, class Arrays>
   static void name_arrays(Self& self, Arrays& arrays) {
@@ -70,6 +82,9 @@ struct FrameCounts {
     arrays("frame.residual", self.residual);
     arrays("frame.smallest_gap", self.smallest_gap);
     arrays("frame.held_back", self.held_back);
+    arrays("frame.steps", self.steps);
+    arrays("frame.converged_steps", self.converged_steps);
+    arrays("frame.error", self.error);
   }
 };
 

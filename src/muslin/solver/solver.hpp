@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,23 +23,26 @@ enum class Integrator {
   symplectic_euler,         ///< explicit, first order, conserves; stable only for small steps
 };
 
-/// How much a step of implicit_euler or bdf2 is worth. Both keep what a StepGuard keeps.
+/// How accurately a step of implicit_euler or bdf2 is solved.
 enum class Effort {
-  converged,  ///< Newton's method to `tolerance`, or the step fails
-  fast,       ///< few iterations, under a guard only: for small steps
+  draft,   ///< to see whether a scene works
+  normal,  ///< for pictures
+  exact,   ///< for measurements
 };
 
 struct SolverSettings {
   Integrator integrator = Integrator::implicit_euler;
-  Effort effort = Effort::converged;
-  /// Converged when no vertex is out of balance by more than this acceleration: max ‖∂E/∂xᵢ‖ / (mᵢ dt²) ≤
-  /// tolerance [m/s²].
-  double tolerance = 1e-2;
-  int max_iterations = 100;  ///< Newton iterations of a converged step
-  /// Newton iterations of a fast step: fewer where hardly anything moves any more and hardly any force is
-  /// left, up to four more where much still moves.
-  int fast_iterations = 2;
+  Effort effort = Effort::normal;
+  /// A step is done when the estimate of its error, as motion, is at most this share of the motion that the
+  /// accelerations at work cause in a step: error ≤ tolerance · a · dt² in every part, and no more than that
+  /// share of an edge. None: that of `effort`.
+  std::optional<double> tolerance;
   double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
+
+  double error_tolerance() const {
+    if (tolerance) return *tolerance;
+    return effort == Effort::draft ? 0.1 : effort == Effort::normal ? 0.01 : 1e-4;
+  }
 };
 
 /// One step's problem. `fixed[v]` is 1 where vertex v is held: it ends the step at targets[v], or, where a
