@@ -15,8 +15,8 @@ bool ends_in(const std::vector<int>& frames, int last) { return !frames.empty() 
 
 std::string missed_text(const RunQuality& quality) {
   return fmt::format(
-      "{} of {} steps missed their tolerance, in {}; the largest estimate of their error is {:.2g} m; raise "
-      "time.steps_per_frame, or look at what happens there",
+      "{} of {} steps missed their tolerance, in {}; the largest estimate of their error is {:.2g} m; look at "
+      "what happens there, or give more steps by time.steps_per_frame",
       quality.steps - quality.converged_steps, quality.steps, describe_frames(quality.frames_missed),
       quality.worst_error);
 }
