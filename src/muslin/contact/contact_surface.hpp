@@ -80,10 +80,13 @@ class ContactSurface {
                       &b = bodies_[static_cast<std::size_t>(body_b)];
     return body_a == body_b ? a.self_contact && !a.fixed : !(a.fixed && b.fixed);
   }
-  /// Of a contact between the bodies of two points in a step of `dt` [s] [N/m].
+  /// Of a contact between the bodies of two points in a step of `dt` [s] [N/m]: the smaller one; where a rigid
+  /// body meets one that bends, their geometric mean if that is more, since the force may be all that stops it.
   double stiffness(int point_a, int point_b, double dt) const {
     const auto of = [dt](const ContactBody& b) { return b.mass > 0 ? 4 * b.mass / (dt * dt) : b.stiffness; };
-    return std::min(of(body_at(point_a)), of(body_at(point_b)));
+    const ContactBody &a = body_at(point_a), &b = body_at(point_b);
+    const double smaller = std::min(of(a), of(b)), larger = std::max(of(a), of(b));
+    return (a.mass > 0) != (b.mass > 0) && std::isfinite(larger) ? std::sqrt(smaller * larger) : smaller;
   }
   /// Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that bodies of one μ have that μ between
   /// them, and what is smooth slides on everything. `common` is that of bodies without one of their own.

@@ -1,10 +1,15 @@
 #include "muslin/simulation/model_parts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace muslin {
 namespace {
+
+/// The linear solver works in single precision while ‖block‖ dt² / mass is below 3e5. In units of
+/// BodyStatistics::stable_step, which is 2/√ratio or less, that is a step of this length.
+constexpr double stable_steps = 150;
 
 class Joined {
  public:
@@ -43,12 +48,14 @@ void join_body(const Body& body, Joined& joined) {
 ModelParts find_parts(const Model& model) {
   const std::size_t count = model.vertex_count();
   Joined joined(count);
-  std::vector<double> edge_of(count, 0.0);
+  std::vector<double> edge_of(count, 0.0), longest_of(count, std::numeric_limits<double>::infinity());
   std::vector<std::uint8_t> covered(count, 0);
   for (const Body& body : model.bodies) {
     join_body(body, joined);
     const auto first = static_cast<std::size_t>(body.first_vertex), size = static_cast<std::size_t>(body.vertex_count);
     std::fill_n(edge_of.begin() + body.first_vertex, size, body.spacing());
+    if (body.statistics.stable_step > 0)
+      std::fill_n(longest_of.begin() + body.first_vertex, size, stable_steps * body.statistics.stable_step);
     std::fill_n(covered.begin() + static_cast<std::ptrdiff_t>(first), size, std::uint8_t{1});
   }
   int loose = -1;
@@ -67,6 +74,7 @@ ModelParts find_parts(const Model& model) {
       part = static_cast<int>(bounds.size());
       bounds.emplace_back();
       parts.edges.push_back(edge_of[v]);
+      parts.longest_steps.push_back(longest_of[v]);
     }
     parts.of_vertex[v] = part;
     bounds[static_cast<std::size_t>(part)].extend(model.rest_positions[v]);

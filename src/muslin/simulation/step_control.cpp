@@ -46,6 +46,7 @@ int StepControl::choose(const ModelParts& parts, std::span<const double> acceler
     const double loads = p < accelerations.size() ? accelerations[p] : 0;
     const double a = moving ? std::sqrt(motions[p].square / motions[p].mass) / state.previous_dt : loads;
     const double edge = std::min(parts.edges[p], parts.sizes[p] > 0 ? parts.sizes[p] / least_edges : 1.0);
+    shortest = std::min(shortest, parts.longest_steps[p]);
     if (a > 0) shortest = std::min(shortest, std::sqrt(share * edge / a));
     if (relative > 0) shortest = std::min(shortest, edges_past * parts.edges[p] / relative);
   }

@@ -55,6 +55,11 @@ class Newton {
     }
     inner_.begin_step();
     evaluate();
+    // What falls freely is where it belongs from the first step on, not only as far as a loose solve leads.
+    if (state_.previous_velocities.empty() && std::isfinite(imbalance_.norm)) {
+      correct_rigid_motions(problem_, function_, guard_, g_, x_);
+      evaluate();
+    }
     while (iterate()) continue;
     report_.residual = imbalance_.largest;
     report_.worst_vertex = imbalance_.vertex;

@@ -94,7 +94,7 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
     const double local = left * std::sqrt(sum.largest_step) + std::sqrt(sum.largest_cut);
     const double error = std::max(mean, local_share * local);
     const double moved = sum.moved + part.mass * part.allowed * part.allowed / (tolerance_ * tolerance_);
-    good = good && error <= part.allowed && sum.leak <= leak_share * tolerance_ * moved;
+    good = good && error <= part.allowed && std::abs(sum.leak) <= leak_share * tolerance_ * moved;
     if (error >= worst_ratio_ * part.allowed) {
       worst_ratio_ = error / part.allowed;
       largest_ = error;
