@@ -30,7 +30,7 @@ std::vector<Comparison> moduli() {
                                 {"3/1/1", Moduli{3e5, 1e5, 1e5, 0}},
                                 {"3/1/1 + volume", Moduli{3e5, 1e5, 1e5, 5e5}}}) {
     Simulation simulation =
-        experiment.start(static_solve(1e-9) + fmt::format(R"(
+        experiment.start(static_solve(1e-8) + fmt::format(R"(
 [[body]]
 mesh = "bar.obj"
 voxel_width = {}
@@ -71,7 +71,7 @@ std::vector<Comparison> hanging_bar() {
   const int layers = 40;
   const double h = 0.05, length = layers * h, density = 1000, youngs = 1e7, gravity = 9.8;
   experiment.box("bar.obj", {2 * h, length, 2 * h});
-  Simulation simulation = experiment.start(static_solve(1e-6) + fmt::format(R"(
+  Simulation simulation = experiment.start(static_solve(1e-7) + fmt::format(R"(
 [[body]]
 mesh = "bar.obj"
 voxel_width = {}

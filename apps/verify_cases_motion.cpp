@@ -54,7 +54,7 @@ frame_rate = 1000
 steps_per_frame = 1
 [solver]
 integrator = "bdf2"
-tolerance = 1e-4
+tolerance = 1e-5
 [[body]]
 mesh = "bar.obj"
 voxel_width = 0.25
@@ -116,8 +116,7 @@ std::vector<Comparison> catenary() {
 frame_rate = 10
 steps_per_frame = 2
 [solver]
-tolerance = 1e-5
-max_iterations = 1000
+tolerance = 1e-6
 [[body]]
 mesh = "chain.obj"
 voxel_width = {}

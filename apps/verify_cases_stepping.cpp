@@ -93,7 +93,7 @@ std::vector<Comparison> oscillator() {
 frame_rate = 50
 steps_per_frame = 1
 [solver]
-tolerance = 1e-12
+tolerance = 1e-9
 [[body]]
 mesh = "box.obj"
 voxel_width = 1
@@ -130,8 +130,8 @@ std::vector<Comparison> orders() {
 [time]
 frame_rate = 10
 [solver]
-tolerance = 1e-9
-linear_tolerance = 1e-12
+tolerance = 1e-8
+linear_tolerance = 1e-9
 [[body]]
 name = "flag"
 mesh = "flag.obj"

@@ -59,7 +59,7 @@ double largest_distance(ConstVectors x, ConstVectors y);
 double differing(const State& a, const State& b);
 
 /// The part of a scene that finds its static equilibrium: steps so long that inertia does not matter.
-/// `tolerance` [m/s²].
+/// `tolerance` is the share of an edge by which it may be wrong.
 std::string static_solve(double tolerance);
 
 }  // namespace muslin::app

@@ -38,7 +38,7 @@ def text(runs, machine):
             part, size = name.split("/")
             parts.setdefault(part.replace("_", " "), {})[int(size)] = number(r["cpu_time"])
             continue
-        case, mode, threads = name.split("/")
+        case, effort, threads = name.split("/")
         if threads == "spread":
             spreads.append([case, *(" / ".join(form(r[f"{what}_{k}"]) for k in ("least", "median", "most"))
                                     for what, form in (("stretch", "{:.3f}".format), ("average", number),
@@ -47,10 +47,10 @@ def text(runs, machine):
         spent = sum(r[k] for k in ("search_ms", "limit_ms", "contact_ms", "assembly_ms", "solve_ms"))
         shares = " / ".join(f"{100 * r[k] / max(spent, 1e-9):.0f}"
                             for k in ("search_ms", "limit_ms", "contact_ms", "assembly_ms", "solve_ms"))
-        rows.append([case, mode, threads.split(":")[1], f"{number(r['ms'])} / {number(r['worst_ms'])}",
+        rows.append([case, effort, threads.split(":")[1], f"{number(r['ms'])} / {number(r['worst_ms'])}",
                      f"{number(r['newton'])}, {number(r['linear'])}", shares, f"{r['stretch']:.3f}",
                      f"{r['height']:.4f}", number(r["crossings"])])
-    head = ["case", "mode", "threads", "ms a frame, average / worst", "Newton, linear iterations a frame",
+    head = ["case", "effort", "threads", "ms a frame, average / worst", "Newton, linear iterations a frame",
             "% search / limiter / contact / assembly / solve", "stretch", "mean height [m]", "crossings"]
     sizes = sorted({size for part in parts.values() for size in part})
     timed = table(["part", *(f"{n}²" for n in sizes)],

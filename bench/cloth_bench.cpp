@@ -13,6 +13,7 @@
 
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/parallel.hpp"
+#include "muslin/scene/names.hpp"
 #include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
@@ -21,11 +22,11 @@ namespace {
 enum class Case { drop, fold, hang };
 
 /// n × n vertices, 1 m × 1 m, shifted along x by `shift` [m].
-std::shared_ptr<const Model> make_model(Case which, int n, ContactMode mode, int steps_per_frame,
-                                        double shift = 0) {
-  test::ContactScene scene(steps_per_frame);
-  scene.mode = mode;
-  scene.model.scene.solver.tolerance = 1e-2;
+std::shared_ptr<const Model> make_model(Case which, int n, Effort effort, double shift = 0) {
+  test::ContactScene scene;
+  scene.model.scene.time.steps_per_frame.reset();
+  scene.model.scene.solver.tolerance.reset();
+  scene.model.scene.solver.effort = effort;
   test::ClothGrid cloth(n, n, 1.0 / (n - 1));
   for (Vec3& p : cloth.positions) p.x() += shift;
   switch (which) {
@@ -53,7 +54,7 @@ std::shared_ptr<const Model> make_model(Case which, int n, ContactMode mode, int
 struct Settings {
   Case which;
   int n;
-  ContactMode mode;
+  Effort effort;
   int threads;
 };
 
@@ -61,8 +62,9 @@ constexpr int frames = 90;
 
 void run(benchmark::State& state, Settings settings) {
   set_thread_count(settings.threads);
-  const auto model = make_model(settings.which, settings.n, settings.mode, 4);
+  const auto model = make_model(settings.which, settings.n, settings.effort);
   double total = 0, worst = 0, stretch = 0, linear = 0, newton = 0, height = 0, gap = INFINITY, residual = 0;
+  double steps = 0, missed = 0, error = 0;
   std::size_t crossings = 0;
   RunCosts costs;
   for (auto _ : state) {
@@ -79,6 +81,9 @@ void run(benchmark::State& state, Settings settings) {
       linear += row.linear_iterations;
       gap = std::min(gap, row.min_distance);
       residual = std::max(residual, row.residual);
+      steps += row.steps;
+      missed += row.steps - row.converged_steps;
+      error = std::max(error, row.error);
       crossings += find_crossings(*model->contact, simulation.state().positions).size();
     }
     costs = simulation.costs();
@@ -95,6 +100,9 @@ void run(benchmark::State& state, Settings settings) {
   state.counters["height"] = height;
   state.counters["min_gap"] = gap;
   state.counters["residual"] = residual;
+  state.counters["steps"] = steps / frames;
+  state.counters["missed"] = missed;
+  state.counters["error"] = error;
   state.counters["search_ms"] = 1e3 * costs.search / frames;
   state.counters["limit_ms"] = 1e3 * costs.limit / frames;
   state.counters["contact_ms"] = 1e3 * costs.contact / frames;
@@ -105,8 +113,8 @@ void run(benchmark::State& state, Settings settings) {
   set_thread_count(0);
 }
 
-/// Fast steps of contact go other ways for other last bits. What that does to stretch and worst frames: eight
-/// drops that begin micrometres apart.
+/// Contact goes other ways for other last bits. Eight drops that begin micrometres apart show how much that
+/// changes stretch and worst frames.
 void spread(benchmark::State& state, int n) {
   set_thread_count(1);
   constexpr int starts = 8;
@@ -114,7 +122,7 @@ void spread(benchmark::State& state, int n) {
   std::size_t crossings = 0;
   for (auto _ : state) {
     for (int k = 0; k < starts; ++k) {
-      const auto model = make_model(Case::drop, n, ContactMode::fast, 4, 1e-6 * k);
+      const auto model = make_model(Case::drop, n, Effort::normal, 1e-6 * k);
       Simulation simulation(model);
       stretch.push_back(0), worst.push_back(0), average.push_back(0);
       for (int f = 0; f < frames; ++f) {
@@ -142,9 +150,9 @@ void spread(benchmark::State& state, int n) {
 }
 
 void add(const std::string& name, Settings settings) {
-  const std::string mode = settings.mode == ContactMode::fast ? "fast" : "converged";
+  const std::string& effort = name_of(effort_names(), settings.effort);
   benchmark::RegisterBenchmark(
-      (name + "_" + std::to_string(settings.n) + "/" + mode + "/threads:" + std::to_string(settings.threads))
+      (name + "_" + std::to_string(settings.n) + "/" + effort + "/threads:" + std::to_string(settings.threads))
           .c_str(),
       [settings](benchmark::State& state) { run(state, settings); })
       ->Iterations(1)
@@ -161,13 +169,15 @@ int main(int argc, char** argv) {
       {"drop", Case::drop}, {"fold", Case::fold}, {"hang", Case::hang}};
   for (const auto& [name, which] : cases) {
     for (const int n : {50, 100, 200}) {
-      for (const int threads : {1, 2}) add(name, {which, n, ContactMode::fast, threads});
+      for (const int threads : {1, 2}) add(name, {which, n, Effort::normal, threads});
     }
   }
-  // What fast steps are measured against.
-  add("drop", {Case::drop, 50, ContactMode::converged, 1});
+  for (const int threads : {1, 2}) add("hang", {Case::hang, 400, Effort::normal, threads});
+  for (const int n : {50, 100, 200}) add("drop", {Case::drop, n, Effort::draft, 1});
+  // The other efforts are measured against this one.
+  add("drop", {Case::drop, 50, Effort::exact, 1});
   for (const int n : {50, 100}) {
-    benchmark::RegisterBenchmark(("drop_" + std::to_string(n) + "/fast/spread").c_str(),
+    benchmark::RegisterBenchmark(("drop_" + std::to_string(n) + "/normal/spread").c_str(),
                                  [n](benchmark::State& state) { spread(state, n); })
         ->Iterations(1)
         ->Unit(benchmark::kMillisecond);

@@ -199,8 +199,6 @@ Problem make_problem(const ProblemSettings& settings) {
     problem.state.velocities = interpolated(source.lattice, source.state.velocities, problem.lattice);
   }
   SolverSettings solver;
-  solver.tolerance = 0.1;
-  solver.max_iterations = 1000;
   Stepper stepper;
   for (int n = 0; n < settings.steps; ++n) {
     const StepContext context = step_context(solver.integrator, problem.state, problem.dt);

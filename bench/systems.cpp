@@ -61,7 +61,6 @@ std::map<std::string, double> cloth_steps(int n, bool coarse_space) {
   StepProblem problem{masses, {&membrane, &bending, &gravity}, fixed, mesh.positions};
   if (coarse_space) problem.rest_positions = mesh.positions;
   SolverSettings settings;
-  settings.tolerance = 0.1;
   constexpr int before = 12, measured = 12;
   Stepper stepper;
   std::map<std::string, double> counters;

@@ -240,9 +240,9 @@ def scene_input(scene, names, snapshots, first, last):
     scale, rate = unit_scale(scene), frame_rate(scene)
     gravity = axes.turned(scene.gravity, scale) if scene.use_gravity else np.zeros(3)
     result = SceneInput(title=f"{scene.name} of {os.path.basename(bpy.data.filepath)}", frames=last - first,
-                        frame_rate=rate, steps_per_frame=props.steps_per_frame, gravity=tuple(gravity),
+                        frame_rate=rate, steps_per_frame=props.steps(), gravity=tuple(gravity),
                         air_density=props.air_density, contact=props.use_contact,
-                        contact_mode=props.contact_mode.lower(), friction=props.friction)
+                        effort=props.effort.lower(), friction=props.friction)
     for obj in cloth_objects(scene):
         m, name = obj.muslin, names[obj.name]
         cloth = Cloth(name=name, model=m.model.lower(), material=m.fabric, thickness=m.thickness * scale,
@@ -258,8 +258,8 @@ def scene_input(scene, names, snapshots, first, last):
             if m.use_stretch_limit:
                 cloth.stretch_limit = m.stretch_limit
         if m.use_release and cloth.pinned:
-            # Half a step later: in the frame itself they still hold.
-            cloth.release = (max(m.release_frame - first, 0) + 0.5 / props.steps_per_frame) / rate
+            # Less than a step later: in the frame itself they still hold.
+            cloth.release = (max(m.release_frame - first, 0) + 0.5 / (props.steps() or 1000)) / rate
         result.cloths.append(cloth)
     for obj in collider_objects(scene):
         result.colliders.append(Collider(names[obj.name], friction=own_friction(obj)))

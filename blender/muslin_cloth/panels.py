@@ -206,12 +206,14 @@ class PHYSICS_PT_muslin_scene(ClothPanel, Panel):
             column = layout.column(align=True)
             column.prop(m, "frame_start")
             column.prop(m, "frame_end")
-        layout.prop(m, "steps_per_frame")
+        layout.prop(m, "effort")
+        layout.prop(m, "use_automatic_steps")
+        if not m.use_automatic_steps:
+            layout.prop(m, "steps_per_frame")
         layout.prop(m, "air_density")
         layout.prop(m, "use_contact")
         column = layout.column()
         column.enabled = m.use_contact
-        column.prop(m, "contact_mode")
         column.prop(m, "friction")
         layout.prop(m, "keep_states")
         gravity = scene.gravity.length * unit_scale(scene) if scene.use_gravity else 0

@@ -67,6 +67,9 @@ class MuslinScene(bpy.types.PropertyGroup):
     use_scene_range: BoolProperty(name="Scene Range", default=True, description="Bake the frame range of the scene")
     frame_start: IntProperty(name="Start", default=1)
     frame_end: IntProperty(name="End", default=250)
+    use_automatic_steps: BoolProperty(
+        name="Automatic Steps", default=True,
+        description="As many steps a frame as the motion needs; otherwise a fixed number")
     steps_per_frame: IntProperty(
         name="Steps per Frame", default=10, min=1, soft_max=100,
         description="More steps follow fast motion better and damp less")
@@ -74,16 +77,21 @@ class MuslinScene(bpy.types.PropertyGroup):
         name="Air Density", default=1.2, min=0, soft_max=10, description="kg/m³; 0 is no air: neither wind nor drag")
     use_contact: BoolProperty(
         name="Contact", default=True, description="Cloth touches itself, other cloth and colliders; nothing crosses")
-    contact_mode: EnumProperty(
-        name="Contact Steps",
-        items=[("FAST", "Fast", "A few iterations a step, for steps of 1/150 s or shorter; nothing crosses either way"),
-               ("CONVERGED", "Converged", "Every step is solved: slower by far, and the bake stops where it cannot be")])
+    effort: EnumProperty(
+        name="Effort", default="NORMAL", description="How accurately steps are solved; nothing crosses in any",
+        items=[("DRAFT", "Draft", "To see whether a scene works"),
+               ("NORMAL", "Normal", "For pictures"),
+               ("EXACT", "Exact", "For measurements: slower by far")])
     friction: FloatProperty(
         name="Friction", default=0.3, min=0, max=100, soft_max=1,
         description="Coulomb's coefficient of cloth and colliders that have none of their own")
     keep_states: BoolProperty(
         name="Keep States", default=True,
         description="Keep the state of every frame, so that a bake can go on from any: 96 bytes per vertex and frame")
+
+    def steps(self):
+        """Steps a frame; None if they are automatic."""
+        return None if self.use_automatic_steps else self.steps_per_frame
 
     def frames(self, scene):
         """(first, last) frame of the bake."""

@@ -45,14 +45,14 @@ class SceneInput:
     title: str
     frames: int  # last frame, from 0
     frame_rate: float
-    steps_per_frame: int
+    steps_per_frame: Optional[int]  # None: automatic
     gravity: Vec = (0.0, 0.0, 0.0)  # [m/s²]
     air_density: float = 1.2  # [kg/m³]; 0: no air
     wind: Optional[Wind] = None
     cloths: List[Cloth] = field(default_factory=list)
     colliders: List[Collider] = field(default_factory=list)
     contact: bool = True  # of cloth with itself, with other cloth and with colliders
-    contact_mode: str = "fast"  # or "converged"
+    effort: str = "normal"  # or "draft" or "exact"
     friction: float = 0.3  # of what has none of its own
 
 
@@ -87,7 +87,8 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
     """`moving` = False leaves sequences out: the scene as it stands at the first frame, for a check."""
     lines = [f"title = {quoted(scene.title)}", "", "[time]"]
     lines += [f"duration = {number(max(scene.frames, 1) / scene.frame_rate)}",
-              f"frame_rate = {number(scene.frame_rate)}", f"steps_per_frame = {scene.steps_per_frame}"]
+              f"frame_rate = {number(scene.frame_rate)}", f"steps_per_frame = {scene.steps_per_frame or quoted('auto')}"]
+    lines += ["", "[solver]", f"effort = {quoted(scene.effort)}"]
     for cloth in scene.cloths:
         lines += ["", "[[body]]"] + _body(cloth)
         if not scene.contact:
@@ -107,7 +108,7 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
         if collider.friction is not None:
             lines.append(f"friction = {number(collider.friction)}")
     if scene.contact:
-        lines += ["", "[contact]", f'mode = "{scene.contact_mode}"', f"friction = {number(scene.friction)}"]
+        lines += ["", "[contact]", f"friction = {number(scene.friction)}"]
     if any(scene.gravity):
         lines += ["", "[[force]]", 'type = "gravity"', f"acceleration = {vector(scene.gravity)}"]
     if scene.air_density > 0:

@@ -191,7 +191,7 @@ class Contact(HostTest):
         box = self.box()
         box.location.z = -0.25
         obj = self.sheet(0.1)
-        bpy.context.scene.muslin.steps_per_frame = 8
+        bpy.context.scene.muslin.use_automatic_steps, bpy.context.scene.muslin.steps_per_frame = False, 8
         bpy.ops.muslin.bake()
         self.assert_plays(obj, "Sheet", 1, 14)
         middle = points(obj, 14)[6 * 13 + 6]
@@ -210,14 +210,15 @@ class Contact(HostTest):
             box.location.z = z
             box.keyframe_insert("location", frame=frame)
         obj = self.sheet(0.0)
-        bpy.context.scene.muslin.steps_per_frame = 8
+        bpy.context.scene.muslin.use_automatic_steps, bpy.context.scene.muslin.steps_per_frame = False, 8
         bpy.ops.muslin.bake()
         self.assertIn("sequence", (self.bake / "scene.toml").read_text())
         self.assertGreater(points(obj, 12)[6 * 13 + 6][2], 0.25, "it is carried up")
 
     def test_friction_is_the_scenes_or_that_of_cloth_and_collider(self):
         scene = bpy.context.scene
-        scene.frame_end, scene.muslin.steps_per_frame, scene.muslin.friction = 12, 8, 0.5
+        scene.frame_end, scene.muslin.friction = 12, 0.5
+        scene.muslin.use_automatic_steps, scene.muslin.steps_per_frame = False, 8
         scene.gravity = (2.82, 0, -9.4)  # a slope of 0.3, seen from itself
         box = self.box(2)
         box.location.z = -1

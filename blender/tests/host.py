@@ -104,7 +104,7 @@ class HostTest(unittest.TestCase):
         scene = bpy.context.scene
         scene.frame_start, scene.frame_end = 1, 6
         scene.render.fps = 24
-        scene.muslin.steps_per_frame = 2
+        scene.muslin.use_automatic_steps, scene.muslin.steps_per_frame = False, 2
         scene.muslin.use_contact = False  # costs time; tests of contact switch it on
         self.save("work.blend")
 

@@ -56,6 +56,7 @@ def scene_with_a_flag():
     obj.vertex_groups.new(name="pins").add([25 * j for j in (0, 8, 16, 24)], 1.0, "REPLACE")  # along its hoist
     obj.location.z = -0.5
     bpy.context.scene.frame_end = 300
+    bpy.context.scene.muslin.use_automatic_steps = False
     bpy.context.scene.muslin.steps_per_frame = 6
     bpy.context.scene.muslin.use_contact = False  # the bake ends soon
     bpy.ops.object.effector_add(type="WIND", location=(-1, 0.6, 0.3), rotation=(0, 1.5708, 0.3))

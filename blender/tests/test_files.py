@@ -140,7 +140,12 @@ class SceneText(Scratch):
         self.assertEqual(told["force"][1]["gust"], 0.5)
         scene.wind = scene_text.Wind([(3, 0, 0)] * 5)
         self.assertEqual(tomllib.loads(scene_text.scene_toml(scene))["force"][1]["velocity"], [3, 0, 0])
-        self.assertEqual(told["contact"], {"mode": "fast", "friction": 0.3})
+        self.assertEqual(told["contact"], {"friction": 0.3})
+        self.assertEqual(told["time"]["steps_per_frame"], 3)
+        self.assertEqual(told["solver"], {"effort": "normal"})
+        scene.steps_per_frame, scene.effort = None, "exact"
+        other = tomllib.loads(scene_text.scene_toml(scene))
+        self.assertEqual((other["time"]["steps_per_frame"], other["solver"]["effort"]), ("auto", "exact"))
         self.assertEqual([b.get("self_contact", True) for b in told["body"]], [True, False])
         scene.colliders = [scene_text.Collider("ball"), scene_text.Collider("arm", "arm.pc2")]
         colliders = tomllib.loads(scene_text.scene_toml(scene))["collider"]

@@ -35,6 +35,13 @@ Columns columns_of(const std::vector<Diagnostics>& rows) {
   columns["max_stretch"] = column(rows, &Diagnostics::max_stretch);
   columns["min_distance"] = column(rows, &Diagnostics::min_distance);
   columns["wall_ms"] = column(rows, &Diagnostics::wall_ms);
+  columns["steps"] = column(rows, &Diagnostics::steps);
+  columns["converged_steps"] = column(rows, &Diagnostics::converged_steps);
+  columns["error"] = column(rows, &Diagnostics::error);
+  columns["unbalanced"] = column(rows, &Diagnostics::unbalanced);
+  columns["crossings"] = column(rows, &Diagnostics::crossings);
+  columns["held_back"] = column(rows, &Diagnostics::held_back);
+  columns["penetration"] = column(rows, &Diagnostics::penetration);
   return columns;
 }
 
@@ -65,6 +72,15 @@ void bind_diagnostics(nb::module_& m) {
           "parted.")
       .def_ro("held_back", &Diagnostics::held_back,
               "Vertices moved along keyframes that something in their way holds back.")
+      .def_ro("steps", &Diagnostics::steps, "Of this frame.")
+      .def_ro("converged_steps", &Diagnostics::converged_steps,
+              "Steps of this frame that ended within their tolerance.")
+      .def_ro("error", &Diagnostics::error,
+              "Largest estimate of what a step of this frame left unsolved, as motion [m].")
+      .def_ro("crossings", &Diagnostics::crossings,
+              "Pairs of triangles that cross, in a start that was allowed to be tangled.")
+      .def_ro("penetration", &Diagnostics::penetration,
+              "How deep the deepest of these, or what is inside a collider, is [m].")
       .def_ro("wall_ms", &Diagnostics::wall_ms, "Time that this frame took.")
       .def("__repr__", [](const Diagnostics& row) {
         return fmt::format(

@@ -9,11 +9,13 @@
 #include <fmt/format.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "muslin/muslin.hpp"
+#include "muslin/scene/names.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -50,11 +52,20 @@ void bind_scene(nb::module_& m) {
           "duration", [](const Scene& s) { return s.time.duration; }, "[s]")
       .def_prop_ro(
           "frame_rate", [](const Scene& s) { return s.time.frame_rate; }, "[1/s]")
-      .def_prop_ro("steps_per_frame", [](const Scene& s) { return s.time.steps_per_frame; })
+      .def_prop_ro(
+          "steps_per_frame", [](const Scene& s) { return s.time.steps_per_frame; },
+          "None: chosen by the program as the motion needs them.")
+      .def_prop_ro(
+          "effort", [](const Scene& s) { return name_of(effort_names(), s.solver.effort); },
+          "How accurately steps are solved: \"draft\", \"normal\" or \"exact\".")
+      .def_prop_ro(
+          "tolerance", [](const Scene& s) { return s.solver.error_tolerance(); },
+          "Largest error of a step, as a share of the motion that the accelerations at work cause in it.")
       .def_prop_ro(
           "frames", [](const Scene& s) { return s.time.frames(); }, "The last frame; frame 0 is the start.")
       .def_prop_ro(
-          "time_step", [](const Scene& s) { return s.time.step(); }, "[s]")
+          "time_step", [](const Scene& s) { return s.time.step(); },
+          "Of a fixed number of steps a frame; the longest one otherwise [s].")
       .def("__repr__", [](const Scene& s) {
         return fmt::format("<muslin.Scene \"{}\": {} bodies, {} frames>", s.title, s.bodies.size(),
                            s.time.frames());

@@ -7,6 +7,17 @@ from conftest import flag_tables, grid_mesh
 import muslin
 
 
+def test_steps_are_automatic_unless_a_number_is_given():
+    scene = muslin.make_scene(flag_tables(time={"duration": 1}))
+    assert (scene.steps_per_frame, scene.effort, scene.tolerance) == (None, "normal", 0.01)
+    assert scene.resolved["time"]["steps_per_frame"] == "auto"
+    for steps, expected in (("auto", None), (7, 7)):
+        scene = muslin.make_scene(flag_tables(time={"steps_per_frame": steps}, solver={"effort": "exact"}))
+        assert (scene.steps_per_frame, scene.effort, scene.tolerance) == (expected, "exact", 1e-4)
+    with pytest.raises(muslin.InputError, match='"auto" or a whole number'):
+        muslin.make_scene(flag_tables(time={"steps_per_frame": "many"}))
+
+
 def test_reads_a_scene_of_the_repository(source):
     scene = muslin.read_scene(source / "scenes/thesis/2_two_corners.toml", ["time.duration=1", "body.flag.voxel_width=2"])
     assert scene.title.startswith("Thesis experiment 2")

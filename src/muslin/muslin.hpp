@@ -4,6 +4,7 @@
 #include "muslin/cache/export.hpp"
 #include "muslin/cache/run.hpp"
 #include "muslin/cache/run_reader.hpp"
+#include "muslin/cache/run_quality.hpp"
 #include "muslin/cache/run_writer.hpp"
 #include "muslin/cache/stages.hpp"
 #include "muslin/contact/crossings.hpp"

@@ -89,15 +89,6 @@ inline Outcome run(const Scratch& scratch, const std::vector<std::string>& argum
   return Process(scratch, arguments, streams).wait();
 }
 
-/// The bytes of a table without its column `wall_ms`, the last: what a resumed run must share with a
-/// straight one.
-inline std::string without_last_column(const std::string& table) {
-  std::string text;
-  std::istringstream in(table);
-  for (std::string line; std::getline(in, line);) text += line.substr(0, line.rfind(',')) + "\n";
-  return text;
-}
-
 inline void write_scene(const std::filesystem::path& path, const std::string& mesh,
                         const std::string& body = "voxel_width = 1.0\nmaterial = \"thesis_flag\"\n",
                         const std::string& rest = "") {

@@ -46,4 +46,18 @@ inline void write_bytes(const std::filesystem::path& path, const std::string& co
   std::ofstream(path, std::ios::binary) << content;
 }
 
+/// The bytes of diagnostics.csv without its column `wall_ms`: what a resumed run must share with a straight
+/// one.
+inline std::string without_wall_times(const std::string& table) {
+  constexpr int column = 15;
+  std::string text;
+  std::istringstream in(table);
+  for (std::string line; std::getline(in, line);) {
+    std::size_t begin = 0;
+    for (int i = 0; i < column; ++i) begin = line.find(',', begin) + 1;
+    text += line.erase(begin, line.find(',', begin) - begin) + "\n";
+  }
+  return text;
+}
+
 }  // namespace muslin::test

@@ -61,7 +61,6 @@ self_contact = false
 [contact]
 distance = 0.003
 friction = 0.5
-mode = "converged"
 [[collider]]
 shape = "plane"
 name = "floor"
@@ -101,7 +100,6 @@ scale = 2
   EXPECT_FALSE(scene.bodies[0].self_contact);
   EXPECT_EQ(scene.contact.distance, 0.003);
   EXPECT_EQ(scene.contact.friction, 0.4);
-  EXPECT_EQ(scene.contact.mode, ContactMode::converged);
   ASSERT_EQ(scene.colliders.size(), 5u);
   EXPECT_EQ(scene.colliders[0].normal, Vec3(0, 1, 0));
   EXPECT_EQ(scene.colliders[2].name, "capsule2");
@@ -114,7 +112,7 @@ scale = 2
   const auto json = nlohmann::json::parse(scene.resolved);
   EXPECT_EQ(json["collider"][0]["keyframes"][1]["translate"][1], 1);
   EXPECT_EQ(json["collider"][1]["angular_velocity"][2], 90);
-  EXPECT_EQ(json["contact"]["mode"], "converged");
+  EXPECT_EQ(json["contact"], nlohmann::json({{"distance", 0.003}, {"friction", 0.4}}));
 }
 
 TEST_F(ColliderModel, FrictionIsTheScenesUnlessABodyHasItsOwn) {
@@ -195,7 +193,7 @@ TEST_F(ColliderModel, FixedShapesAreBodiesWithoutMass) {
   EXPECT_EQ(json["bodies"].size(), 1u);
   EXPECT_EQ(json["colliders"][0]["movement"], "fixed");
   EXPECT_EQ(json["colliders"][1]["shape"], "plane");
-  EXPECT_EQ(json["contact"]["mode"], "fast");
+  EXPECT_EQ(json["contact"]["friction"], 0.3);
   EXPECT_THAT(describe_text(model), HasSubstr("collider box0: box, fixed\n"));
 }
 
@@ -334,15 +332,11 @@ TEST_F(ColliderModel, SurfacesAreThoseOfTheBodies) {
   EXPECT_EQ(model.contact->friction, 0.3);
 }
 
-TEST_F(ColliderModel, LongStepsAndCoarseMeshesAreWarnings) {
+TEST_F(ColliderModel, CoarseMeshesAreWarnings) {
   std::string even = cloth;
   even.replace(even.find("membrane_weft = 400"), 19, "membrane_weft = 100");
   const std::string floor = "[[collider]]\nshape = 'plane'\ncenter = [0, -1, 0]\n";
   EXPECT_THAT(build(even + floor).warnings, testing::IsEmpty());
-  EXPECT_THAT(build("[time]\nsteps_per_frame = 2\n" + even + floor).warnings,
-              testing::ElementsAre(HasSubstr("set `steps_per_frame` to at least 7")));
-  EXPECT_THAT(build("[time]\nsteps_per_frame = 2\n[contact]\nmode = 'converged'\n" + even + floor).warnings,
-              testing::IsEmpty());
   EXPECT_THAT(
       build("[[body]]\nmesh = 'sheet.obj'\nvoxel_width = 0.05\nmaterial = 'rubber'\nthickness = 0.05\n" +
             floor)
@@ -387,7 +381,8 @@ TEST_F(ColliderModel, WrongCollidersAreErrorsThatSayWhatToDo) {
       {"shape = 'sphere'\nname = 'post'\nradius = 1\n[[pin]]\nbody = 'post'\nwhere = { nearest = [0, 0, 0] "
        "}\n",
        "has no mass, so nothing holds or pushes it"},
-      {"shape = 'plane'\n[contact]\nmode = 'fats'\n", "did you mean `fast`?"},
+      {"shape = 'plane'\n[contact]\nmode = 'fast'\n",
+       "scene.toml:8:1: contact.mode is gone: every scene is solved in one way"},
       {"shape = 'plane'\n[contact]\ndistance = 0\n", "`distance`"},
       {"shape = 'plane'\n[contact]\nfriction = -1\n", "`friction`"},
       {"shape = 'plane'\n[solver]\nintegrator = 'symplectic_euler'\n", "symplectic_euler knows no contact"},

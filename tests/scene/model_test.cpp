@@ -227,6 +227,16 @@ TEST_F(ModelTest, TheStableStepBoundsTheFastestOscillation) {
   EXPECT_GE(model.bodies[0].statistics.stable_step, exact / 1.6);
 }
 
+TEST_F(ModelTest, SymplecticEulerTakesAsManyStepsAsStabilityAllows) {
+  const Model model = build(body("box.obj", "[solver]\nintegrator = 'symplectic_euler'\n"));
+  ASSERT_TRUE(model.scene.time.steps_per_frame);
+  const double longest = 0.9 * model.bodies[0].statistics.stable_step;
+  EXPECT_LE(model.scene.time.step(), longest);
+  const int fewer = *model.scene.time.steps_per_frame - 1;
+  EXPECT_TRUE(fewer == 0 || 1 / (24.0 * fewer) > longest) << "no more steps than needed";
+  EXPECT_FALSE(build(body("box.obj")).scene.time.steps_per_frame);
+}
+
 TEST_F(ModelTest, WarnsOfStepsThatAreTooLongForSymplecticEuler) {
   const Model model = build(body("box.obj", "[solver]\nintegrator = 'symplectic_euler'\n"));
   EXPECT_THAT(model.warnings, testing::IsEmpty());

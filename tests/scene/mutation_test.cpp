@@ -55,7 +55,6 @@ pivot = [0, 0, 0]
 keyframes = [{ time = 0 }, { time = 1, rotate = [0, 90, 0] }]
 [contact]
 friction = 0.4
-mode = "converged"
 )";
 }
 

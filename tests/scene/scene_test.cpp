@@ -43,8 +43,10 @@ TEST(Scene, DefaultsFillWhatIsNotWritten) {
   EXPECT_EQ(scene.title, "scene");
   EXPECT_EQ(scene.time.duration, 2);
   EXPECT_EQ(scene.time.frame_rate, 24);
-  EXPECT_EQ(scene.time.steps_per_frame, 10);
+  EXPECT_FALSE(scene.time.steps_per_frame) << "automatic";
   EXPECT_EQ(scene.solver.integrator, Integrator::implicit_euler);
+  EXPECT_EQ(scene.solver.effort, Effort::normal);
+  EXPECT_EQ(scene.solver.error_tolerance(), 0.01);
   ASSERT_EQ(scene.bodies.size(), 1u);
   const BodySettings& body = scene.bodies.front();
   EXPECT_EQ(body.lattice.rule, VoxelRule::cover);
@@ -67,8 +69,8 @@ frame_rate = 30
 steps_per_frame = 4
 [solver]
 integrator = "bdf2"
-tolerance = 1e-4
-max_iterations = 50
+effort = "exact"
+tolerance = 1e-5
 linear_tolerance = 1e-9
 [[body]]
 name = "flag"
@@ -132,8 +134,9 @@ at = [1, 2, 3]
   EXPECT_EQ(scene.title, "all");
   EXPECT_EQ(scene.time.frames(), 45);
   EXPECT_EQ(scene.solver.integrator, Integrator::bdf2);
-  EXPECT_EQ(scene.solver.tolerance, 1e-4);
-  EXPECT_EQ(scene.solver.max_iterations, 50);
+  EXPECT_EQ(scene.time.steps_per_frame, 4);
+  EXPECT_EQ(scene.solver.effort, Effort::exact);
+  EXPECT_EQ(scene.solver.tolerance, 1e-5);
   EXPECT_EQ(scene.solver.linear_tolerance, 1e-9);
   ASSERT_EQ(scene.bodies.size(), 2u);
   const BodySettings& body = scene.bodies[0];
@@ -182,11 +185,31 @@ at = [1, 2, 3]
 
 TEST(Scene, ResolvedJsonHoldsEverySettingWithItsDefault) {
   const auto json = nlohmann::json::parse(parse(flag_body + "[[force]]\ntype = 'gravity'\n").resolved);
-  EXPECT_EQ(json["time"]["steps_per_frame"], 10);
+  EXPECT_EQ(json["time"]["steps_per_frame"], "auto");
+  EXPECT_EQ(json["solver"]["effort"], "normal");
+  EXPECT_EQ(json["solver"]["tolerance"], 0.01);
   EXPECT_EQ(json["body"][0]["thickness"], 1.0);
   EXPECT_EQ(json["body"][0]["material"]["edge_modulus"], 20000);
   EXPECT_EQ(json["force"][0]["acceleration"][1], -9.8);
   EXPECT_TRUE(json["force"][0]["until"].is_null());
+}
+
+TEST(Scene, StepsAreANumberOrAutomatic) {
+  const auto steps = [](const std::string& value, const std::vector<std::string>& overrides = {}) {
+    return parse_scene("[time]\nsteps_per_frame = " + value + "\n" + flag_body, "scene.toml", overrides);
+  };
+  EXPECT_FALSE(steps("\"auto\"").time.steps_per_frame);
+  EXPECT_EQ(steps("10").time.steps_per_frame, 10);
+  EXPECT_FALSE(steps("10", {"time.steps_per_frame=auto"}).time.steps_per_frame);
+  const Scene ten = steps("\"auto\"", {"time.steps_per_frame=10"});
+  EXPECT_EQ(ten.time.steps_per_frame, 10);
+  EXPECT_EQ(nlohmann::json::parse(ten.resolved)["time"]["steps_per_frame"], 10);
+}
+
+TEST(Scene, EveryEffortHasItsTolerance) {
+  for (const auto& [name, tolerance] : {std::pair{"draft", 0.1}, {"normal", 0.01}, {"exact", 1e-4}})
+    EXPECT_EQ(parse(std::string("[solver]\neffort = '") + name + "'\n" + flag_body).solver.error_tolerance(),
+              tolerance);
 }
 
 TEST(Scene, TheOnlyBodyNeedsNoMention) {
@@ -219,9 +242,14 @@ INSTANTIATE_TEST_SUITE_P(
               "scene.toml:2:12: `duration` of `time` of the scene is -1; give a number above 0"},
         Wrong{"[time]\nduration = nan\n" + flag_body, "is nan"},
         Wrong{"[time]\nduration = 1e6\nframe_rate = 100\n" + flag_body, "more than a million frames"},
-        Wrong{"[time]\nsteps_per_frame = 1.5\n" + flag_body, "give a whole number from 1"},
+        Wrong{"[time]\nsteps_per_frame = 1.5\n" + flag_body, "scene.toml:2:19: `steps_per_frame` is neither"},
+        Wrong{"[time]\nsteps_per_frame = 0\n" + flag_body, "write \"auto\" or a whole number from 1"},
+        Wrong{"[time]\nsteps_per_frame = 'many'\n" + flag_body, "write \"auto\" or a whole number from 1"},
+        Wrong{"[solver]\neffort = 'exat'\n" + flag_body, "did you mean `exact`?"},
+        Wrong{"[solver]\nmax_iterations = 9\n" + flag_body, "unknown key `max_iterations`"},
+        Wrong{"[solver]\ntolerance = 2\n" + flag_body, "give a number above 0 to 1"},
         Wrong{"[solver]\nintegrator = 'implicit'\n" + flag_body, "did you mean `implicit_euler`?"},
-        Wrong{"[solver]\ntolerance = 0\n" + flag_body, "greater than 0 [m/s²]"},
+        Wrong{"[solver]\ntolerance = 0\n" + flag_body, "give a number above 0 to 1"},
         Wrong{"body = 3\n", "write [[body]] in two brackets"}, Wrong{"body = [3]\n", "[[body]] 0 is 3"},
         Wrong{"[body]\nmesh = 'a.obj'\n", "write [[body]] in two brackets"},
         Wrong{"[[body]]\nmesh = 'a.obj'\nmaterial = 'thesis_flag'\n", "has no `voxel_width`"},

@@ -14,8 +14,8 @@ namespace {
 /// A scene whose steps are all looked at.
 class Watched : public SceneRun {
  public:
-  explicit Watched(const std::string& name, std::vector<std::string> overrides = {})
-      : SceneRun("contact/" + name + ".toml", overrides = with_steps_as_frames(name, overrides)),
+  explicit Watched(const std::string& name, const std::vector<std::string>& overrides = {})
+      : SceneRun("contact/" + name + ".toml", overrides),
         referee_(std::make_shared<const Model>(model())) {
     EXPECT_EQ(referee_.crossings(now()), 0U) << "at the start";
   }
@@ -23,7 +23,7 @@ class Watched : public SceneRun {
   /// Runs to the time [s]; false, with a failure, at the first step where something crosses or touches.
   bool until(double time) {
     while (simulation().state().time < time - 1e-9) {
-      until_frame(simulation().frame() + 1);
+      step();
       const std::size_t found = referee_.crossings(now());
       const double least = simulation().diagnostics().min_distance;
       if (found == 0 && least > 0) continue;
@@ -64,14 +64,6 @@ class Watched : public SceneRun {
   }
 
  private:
-  static std::vector<std::string> with_steps_as_frames(const std::string& name,
-                                                       std::vector<std::string> overrides) {
-    const std::string file = std::string(MUSLIN_SOURCE_DIR) + "/scenes/contact/" + name + ".toml";
-    const TimeSettings time = read_scene(file, overrides).time;
-    overrides.push_back(fmt::format("time.frame_rate={:.17g}", time.frame_rate * time.steps_per_frame));
-    overrides.push_back("time.steps_per_frame=1");
-    return overrides;
-  }
   app::Referee referee_;
 };
 

@@ -8,7 +8,7 @@ namespace muslin::test {
 namespace {
 
 TEST(Napkin, FallsHangsAndKeepsItsLength) {
-  SceneRun run("napkin.toml", {"solver.tolerance=0.2"});
+  SceneRun run("napkin.toml", {"solver.effort=draft"});
   EXPECT_TRUE(run.body().is_shell());
   EXPECT_NEAR(run.body().statistics.mass, 0.1503 * 0.16, 1e-9);
   run.until_frame(6);

@@ -1,4 +1,4 @@
-// Runs with contact: nothing crosses in either mode, the balance of energy closes, a run that stops and goes
+// Runs with contact: nothing crosses with any effort, the balance of energy closes, a run that stops and goes
 // on gives the same bits, and a start that crosses is refused.
 #include <cmath>
 #include <memory>
@@ -10,16 +10,18 @@
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
+#include "muslin/scene/names.hpp"
 #include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
 namespace {
 
 /// A square of 1 m over a ball of 0.25 m, its corners bent by noise.
-std::shared_ptr<const Model> drop(int n, ContactMode mode, int steps_per_frame = 4,
+std::shared_ptr<const Model> drop(int n, Effort effort, int steps_per_frame = 4,
                                   Integrator integrator = Integrator::implicit_euler) {
   test::ContactScene scene(steps_per_frame);
-  scene.mode = mode;
+  scene.model.scene.solver.tolerance.reset();
+  scene.model.scene.solver.effort = effort;
   scene.model.scene.solver.integrator = integrator;
   test::ClothGrid cloth(n, n, 1.0 / (n - 1));
   std::mt19937_64 random(3);
@@ -30,9 +32,9 @@ std::shared_ptr<const Model> drop(int n, ContactMode mode, int steps_per_frame =
   return scene.finish();
 }
 
-class BothModes : public ::testing::TestWithParam<ContactMode> {};
+class EveryEffort : public ::testing::TestWithParam<Effort> {};
 
-TEST_P(BothModes, ClothOnABallNeverCrossesAnything) {
+TEST_P(EveryEffort, ClothOnABallNeverCrossesAnything) {
   const auto model = drop(16, GetParam());
   Simulation simulation(model);
   for (int frame = 0; frame < 40; ++frame) {
@@ -47,13 +49,12 @@ TEST_P(BothModes, ClothOnABallNeverCrossesAnything) {
   EXPECT_LT(simulation.state().positions[0].y(), 0.1);  // corners hang
   EXPECT_LT(simulation.diagnostics().max_stretch, 1.15);
 }
-INSTANTIATE_TEST_SUITE_P(Modes, BothModes, ::testing::Values(ContactMode::converged, ContactMode::fast),
-                         [](const auto& info) {
-                           return info.param == ContactMode::fast ? "fast" : "converged";
-                         });
+INSTANTIATE_TEST_SUITE_P(Efforts, EveryEffort,
+                         ::testing::Values(Effort::draft, Effort::normal, Effort::exact),
+                         [](const auto& info) { return name_of(effort_names(), info.param); });
 
 TEST(ContactRun, TheBalanceOfEnergyCloses) {
-  const auto model = drop(12, ContactMode::converged);
+  const auto model = drop(12, Effort::exact);
   Simulation simulation(model);
   const double before = simulation.diagnostics().balance();
   double largest = 0;
@@ -67,8 +68,8 @@ TEST(ContactRun, TheBalanceOfEnergyCloses) {
 }
 
 TEST(ContactRun, GoesOnFromACheckpointBitForBit) {
-  for (const ContactMode mode : {ContactMode::converged, ContactMode::fast}) {
-    const auto model = drop(12, mode);
+  for (const Effort effort : {Effort::exact, Effort::normal}) {
+    const auto model = drop(12, effort);
     Simulation whole(model);
     for (int frame = 0; frame < 12; ++frame) whole.advance();
     const std::vector<std::uint8_t> saved = whole.checkpoint();
@@ -85,7 +86,7 @@ TEST(ContactRun, GoesOnFromACheckpointBitForBit) {
 TEST(ContactRun, GoesOnFromAnyFrameOfAFall) {
   // Points leave the boxes that candidates were found for within steps, and are searched for alone: nothing
   // of that may outlive the step.
-  const auto model = drop(16, ContactMode::fast);
+  const auto model = drop(16, Effort::normal);
   Simulation whole(model);
   for (int frame = 0; frame < 70; ++frame) {
     Simulation resumed(model);
@@ -97,7 +98,7 @@ TEST(ContactRun, GoesOnFromAnyFrameOfAFall) {
 }
 
 TEST(ContactRun, PositionsPutByHandAreCheckedAndTouchNothingOld) {
-  const auto model = drop(12, ContactMode::converged);
+  const auto model = drop(12, Effort::exact);
   Simulation simulation(model);
   for (int frame = 0; frame < 12; ++frame) simulation.advance();
   ASSERT_LT(simulation.diagnostics().min_distance, model->contact->distance);
@@ -128,7 +129,7 @@ TEST(ContactRun, PositionsPutByHandAreCheckedAndTouchNothingOld) {
 }
 
 TEST(ContactRun, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const auto model = drop(20, ContactMode::fast);
+  const auto model = drop(20, Effort::normal);
   std::vector<std::vector<Vec3>> ends;
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
@@ -158,12 +159,12 @@ TEST(ContactRun, RefusesAStartThatCrosses) {
 }
 
 TEST(ContactRun, RefusesSymplecticEuler) {
-  EXPECT_THROW(Simulation(drop(6, ContactMode::fast, 4, Integrator::symplectic_euler)), Error);
+  EXPECT_THROW(Simulation(drop(6, Effort::normal, 4, Integrator::symplectic_euler)), Error);
 }
 
 TEST(ContactRun, OtherIntegratorsWorkToo) {
   for (const Integrator integrator : {Integrator::bdf2, Integrator::linearly_implicit_euler}) {
-    const auto model = drop(12, ContactMode::converged, 4, integrator);
+    const auto model = drop(12, Effort::exact, 4, integrator);
     Simulation simulation(model);
     for (int frame = 0; frame < 20; ++frame) {
       simulation.advance();

@@ -153,28 +153,6 @@ TEST(Simulation, TooLargeExplicitStepsAreHalved) {
   for (const Vec3& x : simulation.state().positions) EXPECT_TRUE(x.allFinite());
 }
 
-TEST(Simulation, ImplicitStepsThatFailAreHalvedUntilTheyConverge) {
-  SmallModelOptions options;
-  options.steps_per_frame = 1;
-  options.tolerance = 1e-6;
-  Model starved = small_model(options);
-  starved.scene.solver.max_iterations = 2;  // enough for a short step only
-  Simulation whole(shared(small_model(options))), halved(shared(std::move(starved)));
-  for (int frame = 0; frame < 24; ++frame) {
-    whole.advance();
-    halved.advance();
-    EXPECT_LE(halved.diagnostics().residual, options.tolerance) << frame;
-    EXPECT_EQ(halved.state().time, whole.state().time) << "the frames are where they were";
-  }
-  EXPECT_EQ(whole.state().step, 24);
-  EXPECT_GT(halved.state().step, 24);
-  // Shorter steps damp less, so that the two differ, but by no more than time stepping does.
-  double apart = 0;
-  for (std::size_t v = 0; v < whole.state().positions.size(); ++v)
-    apart = std::max(apart, (whole.state().positions[v] - halved.state().positions[v]).norm());
-  EXPECT_LT(apart, 0.5);
-}
-
 TEST(Simulation, CheckpointsOfOtherBodiesAreRefused) {
   Simulation simulation(shared(small_model()));
   Model other = small_model();

@@ -11,6 +11,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/force/force_function.hpp"
+#include "muslin/scene/names.hpp"
 #include "muslin/simulation/run_state.hpp"
 #include "muslin/simulation/simulation.hpp"
 
@@ -22,7 +23,7 @@ using Bytes = std::vector<std::uint8_t>;
 std::shared_ptr<const Model> shared(Model model) { return std::make_shared<const Model>(std::move(model)); }
 
 struct ShellOptions {
-  ContactMode mode = ContactMode::converged;
+  Effort effort = Effort::normal;
   Integrator integrator = Integrator::implicit_euler;
   bool wall = false;
 };
@@ -30,7 +31,8 @@ struct ShellOptions {
 /// A square of 1 m that falls on a ball of 0.25 m and rubs on it.
 std::shared_ptr<const Model> draped(const ShellOptions& options) {
   test::ContactScene scene;
-  scene.mode = options.mode;
+  scene.model.scene.solver.tolerance.reset();
+  scene.model.scene.solver.effort = options.effort;
   scene.friction = 0.4;
   scene.model.scene.solver.integrator = options.integrator;
   test::ClothGrid cloth(12, 12, 1.0 / 11);
@@ -51,7 +53,6 @@ std::shared_ptr<const Model> draped(const ShellOptions& options) {
 /// A strip that stands in a sheet and is drawn out of it.
 std::shared_ptr<const Model> tangled() {
   test::ContactScene scene;
-  scene.mode = ContactMode::fast;
   test::ClothGrid sheet(11, 11, 0.03), strip(5, 5, 0.03);
   scene.add_cloth(sheet);
   std::vector<int> border;
@@ -70,15 +71,15 @@ std::shared_ptr<const Model> tangled() {
 }
 
 /// A rigid ball that a pin carries into another one and then lets go; both come to lie on a floor.
-std::shared_ptr<const Model> rigid(const std::string& mode) {
+std::shared_ptr<const Model> rigid(const std::string& effort) {
   return shared(build_model(parse_scene(
       "[[collider]]\nname = 'ball'\nshape = 'sphere'\ncenter = [0, 0.25, 0]\nradius = 0.1\ndensity = 500\n"
       "[[collider]]\nname = 'other'\nshape = 'sphere'\ncenter = [0.25, 0.15, 0]\nradius = 0.1\n"
       "density = 300\n[[collider]]\nname = 'floor'\nshape = 'plane'\n"
       "[[force]]\ntype = 'gravity'\nacceleration = [0, -10, 0]\n"
       "[[pin]]\nbody = 'ball'\nuntil = 0.25\nkeyframes = [{ time = 0 }, { time = 0.25, "
-      "translate = [0.1, -0.05, 0] }]\n[contact]\nmode = '" +
-          mode + "'\n",
+      "translate = [0.1, -0.05, 0] }]\n[solver]\neffort = '" +
+          effort + "'\n",
       "scene.toml")));
 }
 
@@ -109,18 +110,18 @@ TEST(Scratch, IsOfNoUseToALattice) {
 }
 
 TEST(Scratch, IsOfNoUseToAShellThatTouchesAndRubs) {
-  for (const ContactMode mode : {ContactMode::fast, ContactMode::converged})
+  for (const Effort effort : {Effort::draft, Effort::normal, Effort::exact})
     for (const Integrator integrator : {Integrator::implicit_euler, Integrator::bdf2}) {
-      SCOPED_TRACE((mode == ContactMode::fast ? "fast " : "converged ") +
+      SCOPED_TRACE(name_of(effort_names(), effort) + " " +
                    std::to_string(static_cast<int>(integrator)));
-      expect_no_use_of_scratch(draped({mode, integrator}), 20);
+      expect_no_use_of_scratch(draped({effort, integrator}), 20);
     }
 }
 
 TEST(Scratch, IsOfNoUseToRigidBodiesThatPinsMove) {
-  for (const char* mode : {"fast", "converged"}) {
-    SCOPED_TRACE(mode);
-    expect_no_use_of_scratch(rigid(mode), 12);
+  for (const char* effort : {"draft", "normal", "exact"}) {
+    SCOPED_TRACE(effort);
+    expect_no_use_of_scratch(rigid(effort), 12);
   }
 }
 
@@ -134,7 +135,7 @@ TEST(Scratch, IsOfNoUseToWhatIsTangled) {
 }
 
 TEST(Scratch, CostsAreCountedWhateverIsForgotten) {
-  Simulation simulation(draped({ContactMode::fast}));
+  Simulation simulation(draped({}));
   for (int step = 0; step < 4; ++step) simulation.step();
   const RunCosts before = simulation.costs();
   EXPECT_GT(before.limits, 0);
@@ -164,8 +165,8 @@ void expect_untouched_by_failure(Simulation& simulation) {
 }
 
 TEST(FailedStep, LeavesTheStateAsItWas) {
-  for (const ContactMode mode : {ContactMode::fast, ContactMode::converged}) {
-    Simulation cloth(draped({mode, Integrator::implicit_euler, true}));
+  for (const Effort effort : {Effort::normal, Effort::exact}) {
+    Simulation cloth(draped({effort, Integrator::implicit_euler, true}));
     expect_untouched_by_failure<Error>(cloth);
     EXPECT_GT(cloth.state().step, 10);
   }
@@ -179,8 +180,8 @@ TEST(FailedStep, LeavesTheStateAsItWas) {
 }
 
 TEST(FailedStep, OfALoadThatThrowsIsTakenAgainWithTheSameBits) {
-  for (const ContactMode mode : {ContactMode::fast, ContactMode::converged}) {
-    const auto model = draped({mode});
+  for (const Effort effort : {Effort::normal, Effort::exact}) {
+    const auto model = draped({effort});
     Simulation simulation(model), undisturbed(model);
     int calls = 0;
     const auto load = [](ForceFunction::Function function) {
@@ -198,7 +199,7 @@ TEST(FailedStep, OfALoadThatThrowsIsTakenAgainWithTheSameBits) {
 }
 
 TEST(RunState, ComesBackFromACheckpointWithEveryArray) {
-  Simulation simulation(draped({ContactMode::fast}));
+  Simulation simulation(draped({}));
   for (int step = 0; step < 70; ++step) simulation.step();
   const Bytes bytes = simulation.checkpoint();
   const RunState state = from_checkpoint(bytes, simulation.model().vertex_count());

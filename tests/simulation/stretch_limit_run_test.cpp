@@ -19,8 +19,7 @@ frame_rate = 30
 steps_per_frame = 4
 duration = 3
 [solver]
-tolerance = 1e-3
-max_iterations = 400
+tolerance = 1e-4
 [[body]]
 name = "cloth"
 mesh = "sheet.obj"

@@ -38,7 +38,7 @@ struct Particle {
 SolverSettings tight(Integrator integrator) {
   SolverSettings settings;
   settings.integrator = integrator;
-  settings.tolerance = 1e-10;
+  settings.tolerance = 1e-9;
   settings.linear_tolerance = 1e-13;
   return settings;
 }

@@ -30,8 +30,6 @@ void fling(test::Flag& flag) {
     flag.state.positions[v].z() += noise[v].z();
   }
   SolverSettings loose;
-  loose.tolerance = 0.1;
-  loose.max_iterations = 1000;
   for (int n = 0; n < 40; ++n) ASSERT_TRUE(flag.step(loose, 1.0 / 240).converged) << "step " << n;
 }
 
@@ -53,7 +51,7 @@ double compressed_edges(const test::Flag& flag) {
 /// One step: in balance, by the report and by an evaluation of its own, and lower than where it started from.
 void expect_a_step(test::Flag& flag, const std::string& where) {
   SolverSettings settings;
-  settings.max_iterations = 400;
+  settings.tolerance = 1e-6;
   const StepProblem problem = flag.problem();
   const State before = flag.state;
   const StepContext context = step_context(settings.integrator, before, dt);
@@ -62,7 +60,7 @@ void expect_a_step(test::Flag& flag, const std::string& where) {
   ASSERT_TRUE(report.converged) << where << ": " << report.failure << ", residual " << report.residual;
   std::vector<Vec3> g(flag.rest.size());
   function.gradient(flag.state.positions, g);
-  EXPECT_LE(function.imbalance(g).largest, settings.tolerance) << where;
+  EXPECT_LE(function.imbalance(g).largest, 0.1) << where;
   std::vector<Vec3> prediction = context.inertial_prediction;
   for (std::size_t v = 0; v < prediction.size(); ++v)
     if (flag.fixed[v] != 0) prediction[v] = flag.targets[v];

@@ -33,13 +33,12 @@ class ContactScene {
   std::vector<ContactBody> bodies;
   std::vector<ContactPlane> planes;
   double distance = 2e-3, friction = 0.3;
-  ContactMode mode = ContactMode::converged;
 
   explicit ContactScene(int steps_per_frame = 4, double frame_rate = 60) {
     model.scene.title = "contact";
     model.scene.resolved = "{}";
     model.scene.time = {10, frame_rate, steps_per_frame};
-    model.scene.solver.tolerance = 1e-3;
+    model.scene.solver.tolerance = 1e-4;
     model.scene.solver.linear_tolerance = 1e-10;
   }
 
@@ -142,7 +141,6 @@ class ContactScene {
     contact->map->apply(model.rest_positions, contact->rest);
     contact->distance = distance;
     contact->friction = friction;
-    contact->mode = mode;
     contact->limits.gap_floor = 0.005 * distance;
     contact->limits.prescribed = prescribed_;
     model.contact = contact;

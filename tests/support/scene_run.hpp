@@ -25,6 +25,11 @@ class SceneRun {
     return *this;
   }
 
+  SceneRun& step() {
+    simulation_.step();
+    return *this;
+  }
+
   const Simulation& simulation() const { return simulation_; }
   const Model& model() const { return simulation_.model(); }
   const Body& body() const { return model().bodies.front(); }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "muslin/cache/run_files.hpp"
+#include "muslin/cache/run_quality.hpp"
 #include "muslin/cache/run_writer.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/scene/model.hpp"
@@ -30,14 +31,6 @@ class Pace {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   double from_;
 };
-
-std::string describe(const HeldBack& held, int last_frame) {
-  return fmt::format(
-      "pins or colliders that move could not follow their keyframes in {}, the first {}: something "
-      "held back up to {} of their vertices; {}",
-      held.frames == 1 ? "1 frame" : fmt::format("{} frames", held.frames), held.first, held.most,
-      held.last == last_frame ? "they still are behind" : "they have caught up");
-}
 
 }  // namespace
 
@@ -70,9 +63,7 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
   result.first_frame = simulation.frame();
   result.changes = writer.changes();
   result.warnings = model->warnings;
-  const double begin =
-      simulation.frame() + static_cast<double>(simulation.steps_done()) / scene.time.steps_per_frame;
-  const Pace pace(begin);
+  const Pace pace(simulation.state().time * scene.time.frame_rate);
   Progress stepping;
   stepping.cancelled = options.cancelled;
   stepping.report = [&](double fraction, std::string_view stage) {
@@ -107,8 +98,7 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     throw;
   }
   result.last_frame = simulation.frame();
-  if (writer.held_back().frames > 0)
-    result.warnings.push_back(describe(writer.held_back(), result.last_frame));
+  for (const std::string& warning : warnings_of(writer.quality())) result.warnings.push_back(warning);
   return result;
 }
 

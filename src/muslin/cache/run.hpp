@@ -40,7 +40,7 @@ struct RunResult {
   int first_frame = 0;                ///< 0, or the frame that was resumed from
   int last_frame = 0;                 ///< the last one written
   std::vector<std::string> changes;   ///< settings changed since the run that was resumed
-  std::vector<std::string> warnings;  ///< of the model, and of motion that was held back
+  std::vector<std::string> warnings;  ///< of the model, and of what the run did not do as it should
 };
 
 /// Errors: as read_scene, build_model, RunWriter and Simulation::advance throw them. After Error(solver) the

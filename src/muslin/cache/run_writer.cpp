@@ -125,7 +125,7 @@ struct RunWriter::Parts {
   std::vector<std::string> changes;
   Json sessions = Json::array();
   int first_frame = 0;
-  HeldBack held_back;
+  RunQuality quality;
   int durable_frame = -1;  ///< of the newest checkpoint known to be on the disk
   Clock::time_point begin = Clock::now(), last_checkpoint = begin, last_sync = begin;
 
@@ -135,22 +135,15 @@ struct RunWriter::Parts {
         total_frames(frames),
         history(the_history) {}
 
-  void note_held_back() {
-    const Diagnostics& row = simulation.diagnostics();
-    if (row.held_back == 0) return;
-    if (held_back.frames == 0) held_back.first = row.frame;
-    ++held_back.frames;
-    held_back.last = row.frame;
-    held_back.most = std::max(held_back.most, row.held_back);
-  }
-
   const Model& model() const { return simulation.model(); }
   void claim();
   void start();
   std::vector<CheckpointFile> checkpoints_to_try() const;
   bool resume();
+  void renew_diagnostics() const;
   void open_files(int frames);
   void append_points();
+  void append_rows();
   void write_checkpoint(bool durable);
   void prune_checkpoints() const;
   void sync();
@@ -196,8 +189,7 @@ void RunWriter::Parts::start() {
   }
   open_files(0);
   append_points();
-  diagnostics.append(diagnostics_row(simulation.diagnostics()));
-  probes.append(probe_rows(simulation));
+  append_rows();
   sync();
   write_checkpoint(true);
 }
@@ -235,6 +227,15 @@ void RunWriter::Parts::open_files(int frames) {
   probes = table("probes.csv", probes_header);
 }
 
+/// A table that an earlier version began gets the columns of this one, as it can have only one kind of rows.
+void RunWriter::Parts::renew_diagnostics() const {
+  const fs::path path = directory / "diagnostics.csv";
+  if (read_file(path).starts_with(diagnostics_header)) return;
+  std::string text(diagnostics_header);
+  for (const Diagnostics& row : read_diagnostics(path)) text += diagnostics_row(row);
+  write_atomically(path, text);
+}
+
 /// Those a resume may begin from, the best first.
 std::vector<CheckpointFile> RunWriter::Parts::checkpoints_to_try() const {
   std::vector<CheckpointFile> all = list_checkpoints(directory);
@@ -263,7 +264,10 @@ bool RunWriter::Parts::resume() {
     try {
       const std::string content = read_file(file.path);
       simulation.restore({content.begin(), content.end()});
+      renew_diagnostics();
       open_files(file.frame + 1);
+      quality = {};
+      for (const Diagnostics& row : read_diagnostics(directory / "diagnostics.csv")) quality.add(row);
       first_frame = file.frame;
       sessions = run["timings"].value("sessions", Json::array());
       return true;
@@ -292,6 +296,12 @@ void RunWriter::Parts::append_points() {
     caches[b].contour->append(points);
     caches[b].lattice->append(q);
   }
+}
+
+void RunWriter::Parts::append_rows() {
+  diagnostics.append(diagnostics_row(simulation.diagnostics()));
+  probes.append(probe_rows(simulation));
+  quality.add(simulation.diagnostics());
 }
 
 void RunWriter::Parts::sync() {
@@ -363,18 +373,17 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
                     {"cores", std::thread::hardware_concurrency()},
                     {"threads", thread_count()},
                     {"compiler", __VERSION__}};
+  run["convergence"] = {{"steps", quality.steps},
+                        {"converged_steps", quality.converged_steps},
+                        {"worst_error", quality.worst_error},
+                        {"frames_missed", quality.frames_missed}};
+  run["held_back"] = {{"frames", quality.frames_held_back}, {"most", quality.most_held_back}};
+  run["crossings"] = {{"at_end", quality.crossings_at_end}, {"frames", quality.frames_crossing}};
   Json all = sessions;
-  Json session = {{"from_frame", first_frame},
-                  {"to_frame", simulation.frame()},
-                  {"wall_s", std::chrono::duration<double>(Clock::now() - begin).count()},
-                  {"changed", changes}};
-  if (held_back.frames > 0) {
-    session["held_back"] = {{"frames", held_back.frames},
-                            {"first", held_back.first},
-                            {"last", held_back.last},
-                            {"most", held_back.most}};
-  }
-  all.push_back(session);
+  all.push_back({{"from_frame", first_frame},
+                 {"to_frame", simulation.frame()},
+                 {"wall_s", std::chrono::duration<double>(Clock::now() - begin).count()},
+                 {"changed", changes}});
   run["timings"] = {{"sessions", all}};
   write_atomically(directory / "run.json", run.dump(2) + "\n");
 }
@@ -403,14 +412,12 @@ RunWriter::~RunWriter() = default;
 bool RunWriter::resumed() const { return parts_->resumed; }
 const std::vector<std::string>& RunWriter::changes() const { return parts_->changes; }
 
-const HeldBack& RunWriter::held_back() const { return parts_->held_back; }
+const RunQuality& RunWriter::quality() const { return parts_->quality; }
 
 void RunWriter::write_frame() {
   Parts& parts = *parts_;
   parts.append_points();
-  parts.diagnostics.append(diagnostics_row(parts.simulation.diagnostics()));
-  parts.probes.append(probe_rows(parts.simulation));
-  parts.note_held_back();
+  parts.append_rows();
   const auto now = Clock::now();
   const bool durable = now - parts.last_sync >= sync_interval;
   const std::size_t state_bytes = 4 * sizeof(Vec3) * parts.model().vertex_count();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/cache/run_quality.hpp"
 #include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
@@ -23,13 +24,6 @@ struct RunHistory {
 /// Settings of the run in `directory` that the model's scene has otherwise, e.g. "time.duration". Errors:
 /// input, naming them, if the frames already written could not bear it; file.
 std::vector<std::string> changes_since(const std::filesystem::path& directory, const Model& model);
-
-/// Frames at whose end pins or colliders were behind their keyframes or sequence, for something in their way.
-struct HeldBack {
-  int frames = 0;           ///< how many
-  int first = 0, last = 0;  ///< of these
-  int most = 0;             ///< vertices, in the worst frame
-};
 
 /// Writes a run. One process at a time; a lock in `checkpoint/` sees to it.
 ///
@@ -55,8 +49,8 @@ class RunWriter {
   const std::vector<std::string>& changes() const;
   /// Adds the frame that the simulation has just finished.
   void write_frame();
-  /// Of the frames written so far by this writer.
-  const HeldBack& held_back() const;
+  /// Of all frames of the run so far.
+  const RunQuality& quality() const;
   /// Writes a checkpoint of the very step reached, flushes everything, sets the status. `reason` says why a
   /// run failed or stopped.
   void finish(RunStatus status, const std::string& reason = "");

@@ -20,18 +20,29 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
+constexpr std::size_t all_columns = 23, first_columns = 16;  // of this version, of earlier ones
+
+/// That earlier versions wrote: without the columns behind wall_ms.
+std::string first_header() {
+  constexpr std::string_view last = ",wall_ms";
+  return std::string(diagnostics_header.substr(0, diagnostics_header.find(last) + last.size())) + "\n";
+}
+
 }  // namespace
 
 const std::string_view diagnostics_header =
     "frame,time,kinetic,elastic,potential,work,dissipated,momentum_x,momentum_y,momentum_z,"
-    "newton_iterations,linear_iterations,residual,max_stretch,min_distance,wall_ms\n";
+    "newton_iterations,linear_iterations,residual,max_stretch,min_distance,wall_ms,steps,converged_steps,"
+    "error,unbalanced,crossings,held_back,penetration\n";
 const std::string_view probes_header = "frame,time,name,x,y,z,vx,vy,vz\n";
 
 std::string diagnostics_row(const Diagnostics& row) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}\n", row.frame, row.time,
-                     row.kinetic, row.elastic, row.potential, row.work, row.dissipated, row.momentum.x(),
-                     row.momentum.y(), row.momentum.z(), row.newton_iterations, row.linear_iterations,
-                     row.residual, row.max_stretch, row.min_distance, row.wall_ms);
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{},{},{}\n", row.frame,
+                     row.time, row.kinetic, row.elastic, row.potential, row.work, row.dissipated,
+                     row.momentum.x(), row.momentum.y(), row.momentum.z(), row.newton_iterations,
+                     row.linear_iterations, row.residual, row.max_stretch, row.min_distance, row.wall_ms,
+                     row.steps, row.converged_steps, row.error, row.unbalanced, row.crossings, row.held_back,
+                     row.penetration);
 }
 
 std::string probe_rows(const Simulation& simulation) {
@@ -52,22 +63,24 @@ std::string probe_rows(const Simulation& simulation) {
 
 std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path) {
   const std::string text = read_file(path);
-  if (!text.starts_with(diagnostics_header)) {
+  const bool complete = text.starts_with(diagnostics_header);
+  if (!complete && !text.starts_with(first_header())) {
     throw Error(ErrorKind::input, {path.string(), 1}, "this is not a table of diagnostics",
                 "run the scene again");
   }
   std::vector<Diagnostics> rows;
   int line = 1;
-  for (std::size_t at = diagnostics_header.size(); at < text.size();) {
+  const std::size_t columns = complete ? all_columns : first_columns;
+  for (std::size_t at = text.find('\n') + 1; at < text.size();) {
     const std::size_t end = text.find('\n', at);
     if (end == std::string::npos) break;
     ++line;
-    std::array<double, 16> numbers{};
+    std::array<double, all_columns> numbers{};
     const char* field = text.c_str() + at;
-    for (std::size_t column = 0; column < numbers.size(); ++column) {
+    for (std::size_t column = 0; column < columns; ++column) {
       char* after = nullptr;
       numbers[column] = std::strtod(field, &after);
-      const char separator = column + 1 < numbers.size() ? ',' : '\n';
+      const char separator = column + 1 < columns ? ',' : '\n';
       if (after == field || *after != separator) {
         throw Error(ErrorKind::input, {path.string(), line}, "a number is missing", "run the scene again");
       }
@@ -88,6 +101,13 @@ std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path) {
     row.max_stretch = numbers[13];
     row.min_distance = numbers[14];
     row.wall_ms = numbers[15];
+    row.steps = static_cast<int>(numbers[16]);
+    row.converged_steps = static_cast<int>(numbers[17]);
+    row.error = numbers[18];
+    row.unbalanced = numbers[19];
+    row.crossings = static_cast<int>(numbers[20]);
+    row.held_back = static_cast<int>(numbers[21]);
+    row.penetration = numbers[22];
     rows.push_back(row);
     at = end + 1;
   }

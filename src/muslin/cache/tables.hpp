@@ -19,7 +19,8 @@ std::string diagnostics_row(const Diagnostics& row);
 /// One line per probe of the model.
 std::string probe_rows(const Simulation& simulation);
 
-/// The rows of a diagnostics table; an unfinished last line is left out. Errors: file, input.
+/// The rows of a diagnostics table; an unfinished last line is left out. Tables of earlier versions have no
+/// columns behind wall_ms; these are 0 then. Errors: file, input.
 std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path);
 
 /// Length of the beginning of a table that holds its first line and all rows up to `last_frame` (the first

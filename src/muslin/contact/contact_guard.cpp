@@ -27,13 +27,12 @@ constexpr int most_rounds = 32;
 constexpr double pushed_at_once = 0.125;
 /// Edges taken to be this many contact distances long where nothing bends.
 constexpr double edge_distances = 5;
-/// Of the gap floor in converged steps, for which contact has to hold whatever presses; fast ones rely on the
-/// limiter.
-constexpr double converged_floor = 0.01;
-/// Of gaps in each iteration of a converged step. Iterates go far; one that ends with some edges at a
+/// Of the gap floor: motions that may do without a limit.
+constexpr double slack_share = 1e-4;
+/// The share of gaps that an iteration keeps. Iterations go far; one that ends with some edges at a
 /// thousandth of the range meets forces there that nothing else comes near, and hardly leaves: what moves
 /// along at such gaps is stopped.
-constexpr double converged_kept = 0.1;
+constexpr double kept_share = 0.1;
 /// Friction is full at this speed [m/s].
 constexpr double stick_speed = 1e-3;
 
@@ -59,10 +58,7 @@ double mean_edge(const ContactModel& model) {
 
 StepLimits limits_of(const ContactModel& model) {
   StepLimits limits = model.limits;
-  if (model.mode == ContactMode::converged) {
-    limits.gap_floor *= converged_floor;
-    limits.kept_share = converged_kept;
-  }
+  limits.kept_share = kept_share;
   return limits;
 }
 
@@ -258,6 +254,13 @@ const Potential& ContactGuard::potential(ConstVectors q) {
   measure(q);
   potential_.emplace(distances_, model_->map, q, friction_, start_, memory_.slips);
   return *potential_;
+}
+
+/// Far below what the limiter leaves of every gap.
+double ContactGuard::slack() const { return slack_share * model_->limits.gap_floor; }
+
+void ContactGuard::for_each_contact(const std::function<void(const Contact&)>& visit) const {
+  potential_->hessian().for_each_row(visit);
 }
 
 void ContactGuard::end(ConstVectors q) {

@@ -38,10 +38,11 @@ class ContactGuard : public StepGuard {
   ContactGuard(std::shared_ptr<const ContactModel> model, ContactMemory& memory);
 
   void begin(ConstVectors q, double length, std::span<const std::uint8_t> held) override;
-  double resolution() const override { return edge_; }
+  double slack() const override;
   void limit(ConstVectors q, Vectors d) override;
   void advance(Vectors q, ConstVectors d) override;
   const Potential& potential(ConstVectors q) override;
+  void for_each_contact(const std::function<void(const Contact&)>& visit) const override;
   void end(ConstVectors q) override;
 
   /// Leaves the features of triangles that cross at q free of each other until these part. While some are

@@ -61,6 +61,18 @@ Vec3 ContactHessian::relative(std::size_t row, ConstVectors p) const {
   return sum;
 }
 
+void ContactHessian::for_each_row(const std::function<void(const StepGuard::Contact&)>& visit) const {
+  std::vector<StepGuard::Weight> weights;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    weights.clear();
+    for (int k = row_offsets_[r]; k < row_offsets_[r + 1]; ++k) {
+      const Entry& e = by_row_[static_cast<std::size_t>(k)];
+      weights.push_back({e.index, e.weight});
+    }
+    visit({rows_[r].normal, rows_[r].a, rows_[r].b, weights});
+  }
+}
+
 double ContactHessian::value(ConstVectors q) const {
   return parallel_sum(rows_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;

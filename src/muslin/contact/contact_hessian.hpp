@@ -5,11 +5,13 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "muslin/contact/surface_map.hpp"
 #include "muslin/potential/potential.hpp"
+#include "muslin/potential/step_guard.hpp"
 
 namespace muslin {
 
@@ -30,6 +32,7 @@ class ContactHessian : public Potential {
 
   double value(ConstVectors q) const override;
   void add_gradient(ConstVectors q, Vectors g) const override { add_hessian_product(q, q, g); }
+  void for_each_row(const std::function<void(const StepGuard::Contact&)>& visit) const;
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
   void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;

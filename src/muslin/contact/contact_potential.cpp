@@ -58,6 +58,7 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
     : surface_(distances.candidates().shared_surface()),
       map_(std::move(map)),
       friction_(friction),
+      lagged_q_(lagged.begin(), lagged.end()),
       lagged_(distances.points().begin(), distances.points().end()) {
   if (!(friction.coefficient >= 0) || !(friction.stick_length > 0))
     throw Error(ErrorKind::usage, "a friction coefficient is negative",
@@ -239,6 +240,8 @@ ContactHessian ContactPotential::hessian(ConstVectors q) const {
   }
   return {*map_, rows};
 }
+
+ContactHessian ContactPotential::hessian() const { return hessian(lagged_q_); }
 
 void ContactPotential::add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const {
   hessian(q).add_hessian_product(q, p, y);

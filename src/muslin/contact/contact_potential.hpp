@@ -56,6 +56,10 @@ class ContactPotential : public Potential {
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
   void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;
 
+  ContactHessian hessian(ConstVectors q) const;
+  /// That at the q the potential was made for.
+  ContactHessian hessian() const;
+
   /// The two sums of W.
   struct Parts {
     double normal = 0, friction = 0;  ///< [J]
@@ -91,12 +95,12 @@ class ContactPotential : public Potential {
   std::span<const SurfaceMap::Entry> carried(const Rub& rub) const;
   Vec3 slip(const Rub& rub, ConstVectors x, ConstVectors q) const;
   void add_tilt(const MergedContact& contact, ConstVectors x, std::vector<ContactRow>& rows) const;
-  ContactHessian hessian(ConstVectors q) const;
 
   std::shared_ptr<const ContactSurface> surface_;
   std::shared_ptr<const SurfaceMap> map_;
   Friction friction_;
-  std::vector<Vec3> lagged_;  ///< points where the potential was made
+  std::vector<Vec3> lagged_q_;  ///< where the potential was made
+  std::vector<Vec3> lagged_;    ///< points there
   std::vector<ContactTerm> terms_;
   std::vector<MergedContact> contacts_;  ///< at lagged_
   std::vector<Rub> rubs_;

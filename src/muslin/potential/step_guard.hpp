@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "muslin/core/vectors.hpp"
@@ -19,20 +20,32 @@ class StepGuard {
   /// vertices v for which held[v] (#V) is not 0.
   virtual void begin(ConstVectors x, double length, std::span<const std::uint8_t> held) = 0;
 
-  /// A length of the surfaces that move, an edge of a triangle or the like [m]: motions of a small share of it
-  /// are not seen.
-  virtual double resolution() const = 0;
+  /// Motions up to this length need not be limited [m].
+  virtual double slack() const = 0;
 
   /// Changes the displacement d from x, vertex by vertex, such that the straight way to x + t d is safe for
   /// all t in [0, 1]. `x` must have been reached from where the step began by such ways only.
   virtual void limit(ConstVectors x, Vectors d) = 0;
 
-  /// Moves x by d as far as is safe, however long d is: by several ways as `limit` allows them.
+  /// Advances x by d in collision-free substeps, however long d is.
   virtual void advance(Vectors x, ConstVectors d) = 0;
 
   /// The energy of contact near x, with what is lagged taken at x: to be asked for anew at every iterate.
   /// Valid until the next call.
   virtual const Potential& potential(ConstVectors x) = 0;
+
+  struct Weight {
+    int vertex = 0;
+    double weight = 0;
+  };
+  /// What the potential asked for last resists: a relative motion Σ weight · u, by the stiffness along the
+  /// normal and across it [N/m].
+  struct Contact {
+    Vec3 normal;
+    double normal_stiffness = 0, tangential = 0;
+    std::span<const Weight> weights;
+  };
+  virtual void for_each_contact(const std::function<void(const Contact&)>& visit) const = 0;
 
   /// The step ends at x, under the potential that was asked for last.
   virtual void end(ConstVectors x) = 0;

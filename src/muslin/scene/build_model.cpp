@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,6 +14,8 @@
 
 namespace muslin {
 namespace {
+
+constexpr double most_steps = 1e6;  // of a frame
 
 Progress body_progress(const Progress& whole, std::size_t index, std::size_t count) {
   Progress part;
@@ -82,6 +85,18 @@ void add_colliders(Model& model) {
   for (std::size_t c = 0; c < colliders.size(); ++c) add_collider(model, std::move(built[c]), colliders[c]);
 }
 
+/// As many as stability at rest allows, with some to spare.
+void choose_explicit_steps(Model& model) {
+  TimeSettings& time = model.scene.time;
+  if (model.scene.solver.integrator != Integrator::symplectic_euler || time.steps_per_frame) return;
+  constexpr double share = 0.9;
+  double stable = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < model.scene.bodies.size(); ++b)
+    stable = std::min(stable, model.bodies[b].statistics.stable_step);
+  const double steps = std::ceil(1 / (time.frame_rate * share * stable));
+  time.steps_per_frame = static_cast<int>(std::clamp(steps, 1.0, most_steps));
+}
+
 void warn_of_explicit_steps(Model& model) {
   if (model.scene.solver.integrator != Integrator::symplectic_euler) return;
   const double step = model.scene.time.step();
@@ -117,6 +132,7 @@ Model build_model(const Scene& scene, const Progress& progress) {
   }
   add_colliders(model);
   build_materials(model);
+  choose_explicit_steps(model);
   build_forces(model);
   build_pins(model);
   build_probes(model);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -107,7 +108,6 @@ Json contact_json(const Model& model) {
   if (!model.contact) return nullptr;
   return {{"distance", model.contact->distance},
           {"friction", model.contact->friction},
-          {"mode", name_of(contact_mode_names(), model.contact->mode)},
           {"triangles", model.contact->surface->triangles().size()}};
 }
 
@@ -186,18 +186,35 @@ std::string collider_text(const Model& model, std::size_t index) {
   return text + "\n";
 }
 
+std::string steps_text(const TimeSettings& time) {
+  if (!time.steps_per_frame)
+    return fmt::format("steps as the motion needs them, of at most {:.4g} s,", time.step());
+  return fmt::format("{} steps of {:.4g} s", std::int64_t{time.frames()} * *time.steps_per_frame, time.step());
+}
+
+std::string solver_text(const SolverSettings& solver) {
+  const std::string& name = name_of(integrator_names(), solver.integrator);
+  if (solver.integrator != Integrator::implicit_euler && solver.integrator != Integrator::bdf2) return name;
+  return fmt::format("{}, effort {}, tolerance {:.3g}", name, name_of(effort_names(), solver.effort),
+                     solver.error_tolerance());
+}
+
 }  // namespace
 
 std::string describe_json(const Model& model, std::span<const Crossing> crossings) {
   const Scene& scene = model.scene;
+  const std::optional<int>& fixed = scene.time.steps_per_frame;
   Json json;
   json["title"] = scene.title;
   json["time"] = {{"duration", scene.time.duration},
                   {"frames", scene.time.frames()},
-                  {"steps", std::int64_t{scene.time.frames()} * scene.time.steps_per_frame},
-                  {"step", scene.time.step()},
+                  {"steps_per_frame", fixed ? Json(*fixed) : Json("auto")},
+                  {"steps", fixed ? Json(std::int64_t{scene.time.frames()} * *fixed) : Json(nullptr)},
+                  {"step", fixed ? Json(scene.time.step()) : Json(nullptr)},
                   {"stable_step", finite(stable_step(model))}};
   json["integrator"] = name_of(integrator_names(), scene.solver.integrator);
+  json["effort"] = name_of(effort_names(), scene.solver.effort);
+  json["tolerance"] = scene.solver.error_tolerance();
   json["bodies"] = bodies_json(model);
   json["colliders"] = colliders_json(model);
   json["contact"] = contact_json(model);
@@ -224,13 +241,11 @@ std::string statistics_json(const Model& model) {
 
 std::string describe_text(const Model& model, std::span<const Crossing> crossings) {
   const Scene& scene = model.scene;
-  const std::int64_t steps = std::int64_t{scene.time.frames()} * scene.time.steps_per_frame;
   std::string text = scene.title + "\n";
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) text += body_text(model.bodies[b], scene.bodies[b]);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c) text += collider_text(model, c);
   if (model.contact) {
-    text += fmt::format("contact: {}, within {:.3g} m, friction {:.3g}\n",
-                        name_of(contact_mode_names(), model.contact->mode), model.contact->distance,
+    text += fmt::format("contact: within {:.3g} m, friction {:.3g}\n", model.contact->distance,
                         model.contact->friction);
   }
   for (const Pin& pin : model.pins) {
@@ -238,9 +253,8 @@ std::string describe_text(const Model& model, std::span<const Crossing> crossing
         fmt::format("pin {}: {}\n", pin.name, counted(pin.vertices.size(), "held vertex", "held vertices"));
   }
   text += counted(scene.forces.size(), "force") + ", " + counted(scene.probes.size(), "probe") + "\n";
-  text += fmt::format("{:.6g} s in {} frames, {} steps of {:.4g} s by {}", scene.time.duration,
-                      scene.time.frames(), steps, scene.time.step(),
-                      name_of(integrator_names(), scene.solver.integrator));
+  text += fmt::format("{:.6g} s in {} frames, {} by {}", scene.time.duration, scene.time.frames(),
+                      steps_text(scene.time), solver_text(scene.solver));
   text += fmt::format(" (symplectic_euler would need steps below {:.3g} s)\n", stable_step(model));
   for (const std::string& warning : model.warnings) text += "warning: " + warning + "\n";
   if (!crossings.empty()) text += counted(crossings.size(), "place", "places") + " where surfaces cross:\n";

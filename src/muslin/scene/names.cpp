@@ -7,16 +7,16 @@ const std::vector<std::string>& integrator_names() {
                                                  "symplectic_euler"};
   return names;
 }
+const std::vector<std::string>& effort_names() {
+  static const std::vector<std::string> names = {"draft", "normal", "exact"};
+  return names;
+}
 const std::vector<std::string>& body_model_names() {
   static const std::vector<std::string> names = {"lattice", "shell", "rigid", "sequence"};
   return names;
 }
 const std::vector<std::string>& collider_shape_names() {
   static const std::vector<std::string> names = {"plane", "sphere", "capsule", "box", "mesh"};
-  return names;
-}
-const std::vector<std::string>& contact_mode_names() {
-  static const std::vector<std::string> names = {"fast", "converged"};
   return names;
 }
 const std::vector<std::string>& voxel_rule_names() {

@@ -7,9 +7,9 @@
 namespace muslin {
 
 const std::vector<std::string>& integrator_names();       ///< Integrator
+const std::vector<std::string>& effort_names();           ///< Effort
 const std::vector<std::string>& body_model_names();       ///< BodyModel
 const std::vector<std::string>& collider_shape_names();   ///< ColliderSettings::Shape
-const std::vector<std::string>& contact_mode_names();     ///< ContactMode
 const std::vector<std::string>& voxel_rule_names();       ///< VoxelRule
 const std::vector<std::string>& bracing_names();          ///< Bracing
 const std::vector<std::string>& mass_names();             ///< BodySettings::Mass

@@ -131,15 +131,30 @@ ColliderSettings read_collider(const TomlValue& value, std::size_t index) {
   return collider;
 }
 
+namespace {
+
+/// Scenes for earlier versions have it.
+void refuse_mode(const TomlTable& top) {
+  const TomlValue* contact = top.find("contact");
+  if (contact == nullptr || contact->type != TomlValue::Type::table) return;
+  const TomlValue* mode = contact->find("mode");
+  if (mode == nullptr) return;
+  throw Error(ErrorKind::input, mode->key_place,
+              "contact.mode is gone: every scene is solved in one way",
+              "take it out, and set solver.effort = \"draft\", \"normal\" or \"exact\" if it matters");
+}
+
+}  // namespace
+
 ContactSettings read_contact(const TomlTable& top) {
   ContactSettings contact;
+  refuse_mode(top);
   const auto table = top.table("contact", known_keys("contact"));
   if (!table) return contact;
   contact.given = true;
   contact.place = table->place();
   if (table->has("distance")) contact.distance = table->number("distance", "m", {1e-9, 1e6, false});
   contact.friction = read_friction(*table).value_or(contact.friction);
-  contact.mode = static_cast<ContactMode>(table->choice("mode", contact_mode_names(), 0));
   return contact;
 }
 

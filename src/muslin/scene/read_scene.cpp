@@ -2,6 +2,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,20 @@ namespace muslin {
 namespace {
 
 constexpr double most_frames = 1e6;
+constexpr int most_steps = 1'000'000;  // of a frame
+
+/// None: "auto".
+std::optional<int> read_steps(const TomlTable& table) {
+  constexpr const char* key = "steps_per_frame";
+  const TomlValue* value = table.find(key);
+  if (value == nullptr) return std::nullopt;
+  if (value->type == TomlValue::Type::string && value->string == "auto") return std::nullopt;
+  if (value->type != TomlValue::Type::integer || value->integer < 1 || value->integer > most_steps) {
+    throw table.error(key, "`steps_per_frame` is neither \"auto\" nor a number of steps",
+                      fmt::format("write \"auto\" or a whole number from 1 to {}", most_steps));
+  }
+  return static_cast<int>(value->integer);
+}
 
 TimeSettings read_time(const TomlTable& top) {
   TimeSettings time;
@@ -28,8 +43,7 @@ TimeSettings read_time(const TomlTable& top) {
   if (!table) return time;
   time.duration = table->number("duration", "s", {0, 1e9, true}, time.duration);
   time.frame_rate = table->number("frame_rate", "1/s", {1e-6, 1e6, false}, time.frame_rate);
-  time.steps_per_frame =
-      static_cast<int>(table->integer("steps_per_frame", 1, 1'000'000, time.steps_per_frame));
+  time.steps_per_frame = read_steps(*table);
   if (time.duration * time.frame_rate > most_frames) {
     throw table->error("duration",
                        fmt::format("{} s at {} frames per second are more than a million frames",
@@ -44,9 +58,9 @@ SolverSettings read_solver(const TomlTable& top) {
   const auto table = top.table("solver", known_keys("solver"));
   if (!table) return solver;
   solver.integrator = static_cast<Integrator>(table->choice("integrator", integrator_names(), 0));
-  solver.tolerance = table->number("tolerance", "m/s²", Range::positive(), solver.tolerance);
-  solver.max_iterations =
-      static_cast<int>(table->integer("max_iterations", 1, 1'000'000, solver.max_iterations));
+  solver.effort = static_cast<Effort>(
+      table->choice("effort", effort_names(), static_cast<std::size_t>(solver.effort)));
+  if (table->has("tolerance")) solver.tolerance = table->number("tolerance", "", {0, 1, true});
   solver.linear_tolerance =
       table->number("linear_tolerance", "", {1e-16, 0.5, false}, solver.linear_tolerance);
   return solver;

@@ -149,8 +149,7 @@ Json collider(const ColliderSettings& c) {
 /// The contact distance is null where it is chosen from the bodies.
 Json contact(const ContactSettings& c) {
   return {{"distance", c.distance ? Json(*c.distance) : Json(nullptr)},
-          {"friction", c.friction},
-          {"mode", name_of(contact_mode_names(), c.mode)}};
+          {"friction", c.friction}};
 }
 
 Json pin(const PinSettings& p) {
@@ -188,6 +187,10 @@ Json force(const ForceSettings& f) {
   return json;
 }
 
+Json steps_json(const TimeSettings& time) {
+  return time.steps_per_frame ? Json(*time.steps_per_frame) : Json("auto");
+}
+
 template <class Settings, class Convert>
 Json list(const std::vector<Settings>& items, const Convert& convert) {
   Json json = Json::array();
@@ -202,10 +205,10 @@ std::string resolved_json(const Scene& scene) {
   json["title"] = scene.title;
   json["time"] = {{"duration", scene.time.duration},
                   {"frame_rate", scene.time.frame_rate},
-                  {"steps_per_frame", scene.time.steps_per_frame}};
+                  {"steps_per_frame", steps_json(scene.time)}};
   json["solver"] = {{"integrator", name_of(integrator_names(), scene.solver.integrator)},
-                    {"tolerance", scene.solver.tolerance},
-                    {"max_iterations", scene.solver.max_iterations},
+                    {"effort", name_of(effort_names(), scene.solver.effort)},
+                    {"tolerance", scene.solver.error_tolerance()},
                     {"linear_tolerance", scene.solver.linear_tolerance}};
   json["body"] = list(scene.bodies, body);
   json["collider"] = list(scene.colliders, collider);

@@ -29,7 +29,7 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
   static const std::vector<VocabularyTable> tables = {
       {"", {"title", "time", "solver", "body", "collider", "contact", "pin", "force", "probe"}},
       {"time", {"duration", "frame_rate", "steps_per_frame"}},
-      {"solver", {"integrator", "tolerance", "max_iterations", "linear_tolerance"}},
+      {"solver", {"integrator", "effort", "tolerance", "linear_tolerance"}},
       {"body", {"name",      "mesh",         "model",    "thickness",    "voxel_width",
                 "voxels",    "threshold",    "bracing",  "mass",         "boundary_springs",
                 "rest_mesh", "warp",         "material", "translate",    "rotate",
@@ -44,7 +44,7 @@ const std::vector<VocabularyTable>& scene_vocabulary() {
       {"collider.mesh",
        moving_keys({"mesh", "translate", "rotate", "scale", "sequence", "frame_rate", "start"})},
       {"collider.keyframes", {"time", "translate", "rotate"}},
-      {"contact", {"distance", "friction", "mode"}},
+      {"contact", {"distance", "friction"}},
       {"where", {"group", "box", "sphere", "plane", "line", "nearest"}},
       {"where.sphere", {"center", "radius"}},
       {"where.plane", {"point", "normal", "distance"}},

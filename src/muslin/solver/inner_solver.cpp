@@ -61,6 +61,13 @@ bool InnerSolver::prepare_coarse_space() {
   return true;
 }
 
+void InnerSolver::precondition(ConstVectors b, Vectors z) {
+  const double scale = largest_entry(b);
+  if (scale == 0) return std::fill(z.begin(), z.end(), Vec3::Zero());
+  system_.start(b, 1 / scale);
+  system_.precondition(scale, z);
+}
+
 bool InnerSolver::project() {
   if (projected_) return false;
   h_.project();

@@ -32,6 +32,9 @@ class InnerSolver {
   /// linearisation, unless NegativeCurvature::pass asks for H as it is.
   LinearReport solve(ConstVectors b, const LinearSettings& settings, Vectors s, double& norm);
 
+  /// z = P⁻¹ b, P the incomplete factorisation.
+  void precondition(ConstVectors b, Vectors z);
+
   /// Replaces H by its projection until the next linearisation; false if it was so already.
   bool project();
 

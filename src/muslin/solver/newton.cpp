@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <string>
-#include <utility>
-#include <vector>
 
+#include "muslin/core/stopwatch.hpp"
 #include "muslin/solver/conjugate_gradient.hpp"
 #include "muslin/solver/preconditioner.hpp"
+#include "muslin/solver/rigid_correction.hpp"
+#include "muslin/solver/step_error.hpp"
 #include "muslin/solver/vector_operations.hpp"
 
 namespace muslin {
@@ -16,51 +19,257 @@ namespace {
 constexpr double armijo = 1e-4;
 constexpr double slope_share = 0.9;  // approximate Wolfe: the slope must have risen above −0.9 of the first
 constexpr double rounding = 1e-12;   // values closer than this (relative) cannot be told apart reliably
-constexpr double smallest_step = 1e-10;
-constexpr double loosest_forcing = 0.1;
-// A step that shrank the gradient to this share has hardly changed the Hessian, and another like it is enough
-// where no more than a third of that is asked for.
-constexpr double slightest_change = 0.03, ample = 3;
+constexpr double smallest_step = 1e-8;
+constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-4;
+constexpr int max_iterations = 60;
 
-struct Point {
-  Vectors x;
-  IncrementalPotential::Evaluation at;
-};
-
-/// Moves `point` along s, downhill with slope gᵀs < 0, and g with it; false if no step helps: then `point`
-/// stays and g is undefined. `room` is for positions to try; it becomes the old positions.
-bool line_search(const IncrementalPotential& function, ConstVectors s, double slope, Point& point, Vectors g,
-                 Vectors& room) {
-  const double longest = std::min(1.0, 0.9 * function.max_step(point.x, s));
-  const double allowance = rounding * point.at.value.magnitude;
-  for (double t = longest; t > smallest_step;) {
-    combine(point.x, t, s, room);
-    // The first step tried is nearly always taken: its gradient is worth computing along with the value.
-    bool have_gradient = t == longest;
-    IncrementalPotential::Evaluation tried;
-    if (have_gradient) {
-      tried = function.evaluate(room, g);
-    } else {
-      tried.value = function.value(room);
-    }
-    const double change = tried.value.value - point.at.value.value;
-    bool accepted = change <= armijo * t * slope;
-    if (!have_gradient && (accepted || change <= allowance)) {
-      tried = function.evaluate(room, g);
-      have_gradient = true;
-    }
-    if (!accepted && change <= allowance) accepted = std::abs(dot(g, s)) <= slope_share * std::abs(slope);
-    if (accepted && std::isfinite(tried.imbalance.norm)) {
-      std::swap(point.x, room);
-      point.at = tried;
-      return true;
-    }
-    // The minimum of the parabola through value and slope at 0 and the value at t, kept within bounds.
-    const double parabola = -0.5 * slope * t * t / (change - t * slope);
-    t = std::isfinite(change) && std::isfinite(parabola) ? std::clamp(parabola, 0.1 * t, 0.5 * t) : 0.1 * t;
+class Newton {
+ public:
+  Newton(const StepProblem& problem, const IncrementalPotential& function, const SolverSettings& settings,
+         const State& state, double length, Vectors x, NewtonWorkspace& workspace)
+      : problem_(problem),
+        function_(function),
+        state_(state),
+        length_(length),
+        guard_(problem.guard),
+        x_(x),
+        workspace_(workspace),
+        inner_(workspace.inner),
+        g_(workspace.g),
+        s_(workspace.s),
+        d_(workspace.d),
+        there_(workspace.x),
+        count_(x.size()),
+        scale_(function.dt() * function.dt()),
+        error_(problem, function, settings.error_tolerance()),
+        with_contact_(problem) {
+    for (auto* vectors : {&there_, &g_, &s_, &d_, &workspace.base, &workspace.z}) vectors->resize(count_);
+    with_contact_.potentials.push_back(nullptr);
   }
-  return false;
-}
+
+  StepReport run() {
+    if (!start()) {
+      report_.failure = "the held vertices cannot reach their targets within this step";
+      return report_;
+    }
+    inner_.begin_step();
+    evaluate();
+    while (iterate()) continue;
+    report_.residual = imbalance_.largest;
+    report_.worst_vertex = imbalance_.vertex;
+    report_.held_back = held_back_;
+    if (report_.made()) correct_rigid_motions(problem_, function_, guard_, g_, state_.positions, x_);
+    return report_;
+  }
+
+ private:
+  const StepGuard* guard() const { return guard_; }
+  IncrementalPotential full() const {
+    return guard_ ? IncrementalPotential(with_contact_, function_.prediction(), function_.dt()) : function_;
+  }
+
+  /// Fills d_ with the way to `free(v)`, held vertices to their targets.
+  template <class Free>
+  double aim(const Free& free) {
+    for_each_vertex(count_, [&](std::size_t v) {
+      there_[v] = function_.held(v) ? problem_.targets[v] : Vec3(free(v));
+      d_[v] = there_[v] - state_.positions[v];
+    });
+    return function_.value(there_).value;
+  }
+
+  /// False if held vertices cannot follow, or no start has a finite value.
+  bool start() {
+    const auto inertial = [&](std::size_t v) { return function_.prediction()[v]; };
+    bool extrapolated = false;
+    if (!state_.previous_velocities.empty() && state_.previous_dt > 0) {
+      const double change = length_ / state_.previous_dt;
+      const double goes_on = aim([&](std::size_t v) {
+        return Vec3(state_.positions[v] +
+                    length_ * (state_.velocities[v] +
+                               change * (state_.velocities[v] - state_.previous_velocities[v])));
+      });
+      std::swap(d_, s_);
+      extrapolated = goes_on < aim(inertial);
+      if (extrapolated) std::swap(d_, s_);
+    } else {
+      aim(inertial);
+    }
+    const double safe = function_.max_step(x_, d_);
+    if (!(safe >= 1)) {
+      for_each_vertex(count_, [&](std::size_t v) {
+        if (!function_.held(v)) d_[v] *= 0.9 * safe;
+      });
+      if (function_.max_step(x_, d_) < 1) return false;
+    }
+    if (!all_finite(d_)) return false;
+    if (guard_) {
+      guard_->advance(x_, d_);
+    } else {
+      add(1, d_, x_);
+    }
+    held_back_ = snap_to_targets(problem_, x_);
+    return true;
+  }
+
+  /// Everything at x_, contact lagged there.
+  void evaluate() {
+    at_ = function_.evaluate(x_, workspace_.base);
+    take_contact();
+  }
+
+  void take_contact() {
+    imbalance_ = at_.imbalance;
+    if (!guard_) {
+      std::swap(g_, workspace_.base);
+      return;
+    }
+    contact_ = &guard_->potential(x_);
+    with_contact_.potentials.back() = contact_;
+    set_zero(g_);
+    contact_value_ = contact_->add_gradient_and_value(x_, g_);
+    for_each_vertex(count_, [&](std::size_t v) {
+      g_[v] = function_.held(v) ? Vec3(Vec3::Zero()) : Vec3(workspace_.base[v] + scale_ * g_[v]);
+    });
+    imbalance_ = function_.imbalance(g_);
+  }
+
+  /// One iteration; false when the step has ended.
+  bool iterate() {
+    if (!std::isfinite(imbalance_.norm)) {
+      report_.failure = "forces are not finite numbers";
+      return false;
+    }
+    if (report_.newton_iterations == 0 && held_back_ == 0 && error_.bound(x_, g_)) return done(true);
+    if (report_.newton_iterations == max_iterations) return done(false);
+    if (report_.newton_iterations > 0 && held_back_ > 0) push_held();
+    {
+      const Stopwatch watch(report_.linearize_seconds);
+      inner_.linearize(full(), x_);
+    }
+    if (imbalance_.largest <= function_.rounding_floor(x_, inner_.stiffest())) return done(true);
+    ++report_.newton_iterations;
+    inner_.precondition(g_, workspace_.z);
+    error_.begin(g_, workspace_.z);
+    const double norm = imbalance_.norm;
+    if (!move() && !(inner_.project() && move())) {
+      error_.give_up(s_);
+      return done(false);
+    }
+    inner_.precondition(g_, workspace_.z);
+    const bool good = error_.end(x_, state_.positions, g_, workspace_.z, s_, d_, length_t_);
+    const double shrink = imbalance_.norm / norm;
+    forcing_ = std::clamp(0.9 * shrink * shrink, tightest_forcing, loosest_forcing);
+    forcing_ = std::clamp(std::max(forcing_, error_.wanted_forcing()), tightest_forcing, loosest_forcing);
+    if (std::getenv("MUSLIN_TRACE"))
+      std::fprintf(stderr, "  it %d imb %.2e norm %.2e lin %d err %.2e tol %.2e t %.2g s %.2e cut %.2e held %d C %.2e\n",
+                   report_.newton_iterations, imbalance_.largest, imbalance_.norm, report_.linear_iterations,
+                   error_.largest(), error_.allowed(), length_t_, error_.step(), error_.cut(), held_back_, contact_value_);
+    return good ? done(true) : true;
+  }
+
+  bool done(bool converged) {
+    report_.converged = converged;
+    report_.error = error_.largest();
+    return false;
+  }
+
+  /// Moves held vertices that were held back on, pushing what is in their way.
+  void push_held() {
+    for_each_vertex(count_, [&](std::size_t v) {
+      d_[v] = function_.held(v) ? Vec3(problem_.targets[v] - x_[v]) : Vec3(Vec3::Zero());
+    });
+    guard_->limit(x_, d_);
+    add(1, d_, x_);
+    held_back_ = snap_to_targets(problem_, x_);
+    evaluate();
+  }
+
+  /// Solves for a step and goes along it as far as it is safe and the value falls.
+  bool move() {
+    LinearSettings linear;
+    linear.tolerance = forcing_;
+    {
+      const Stopwatch watch(report_.solve_seconds);
+      report_.linear_iterations += solve_linear(full(), x_, g_, linear, inner_, s_).iterations;
+    }
+    for_each_vertex(count_, [&](std::size_t v) { s_[v] = -s_[v]; });
+    return all_finite(s_) && search();
+  }
+
+  double limited(double share) {
+    for_each_vertex(count_, [&](std::size_t v) {
+      d_[v] = function_.held(v) ? Vec3(Vec3::Zero()) : Vec3(share * s_[v]);
+    });
+    if (guard_) guard_->limit(x_, d_);
+    return dot(g_, d_);
+  }
+
+  bool search() {
+    double slope = limited(1);
+    // What is left of a limited step may lead uphill: a shorter one is limited less.
+    for (double share = 0.5; !(slope < 0); share *= 0.5) {
+      if (!guard_ || share < smallest_step) return false;
+      slope = limited(share);
+    }
+    const double longest = std::min(1.0, 0.9 * function_.max_step(x_, d_));
+    const double before = at_.value.value + scale_ * contact_value_;
+    const double allowance = rounding * (at_.value.magnitude + scale_ * std::abs(contact_value_));
+    for (double t = longest; t > smallest_step;) {
+      combine(x_, t, d_, there_);
+      const double contact = contact_ ? contact_->value(there_) : 0;
+      bool have_gradient = t == longest || guard_;
+      IncrementalPotential::Evaluation tried;
+      if (have_gradient) {
+        tried = function_.evaluate(there_, workspace_.base);
+      } else {
+        tried.value = function_.value(there_);
+      }
+      const double change = tried.value.value + scale_ * contact - before;
+      bool accepted = change <= armijo * t * slope;
+      if (!accepted && std::abs(change) <= allowance) {
+        if (!have_gradient) tried = function_.evaluate(there_, workspace_.base);
+        have_gradient = true;
+        accepted = guard_ || std::abs(dot(workspace_.base, d_)) <= slope_share * std::abs(slope);
+      }
+      if (accepted && std::isfinite(tried.value.value)) {
+        if (!have_gradient) tried = function_.evaluate(there_, workspace_.base);
+        if (!std::isfinite(tried.imbalance.norm)) return false;
+        std::copy(there_.begin(), there_.end(), x_.begin());
+        at_ = tried;
+        length_t_ = t;
+        take_contact();
+        return true;
+      }
+      // The minimum of the parabola through value and slope at 0 and the value at t, kept within bounds.
+      const double parabola = -0.5 * slope * t * t / (change - t * slope);
+      t = std::isfinite(change) && std::isfinite(parabola) ? std::clamp(parabola, 0.1 * t, 0.5 * t) : 0.1 * t;
+    }
+    return false;
+  }
+
+  const StepProblem& problem_;
+  const IncrementalPotential& function_;
+  const State& state_;
+  double length_;  ///< of the step [s]
+  StepGuard* guard_;
+  Vectors x_;
+  NewtonWorkspace& workspace_;
+  InnerSolver& inner_;
+  std::vector<Vec3>&g_, &s_, &d_, &there_;
+  std::size_t count_;
+  double scale_;
+  StepError error_;
+  StepProblem with_contact_;
+  StepReport report_;
+  IncrementalPotential::Evaluation at_;     ///< at x, without contact
+  IncrementalPotential::Imbalance imbalance_;  ///< at x, of everything
+  const Potential* contact_ = nullptr;
+  double contact_value_ = 0;
+  double forcing_ = loosest_forcing;
+  double length_t_ = 1;  ///< the share of d_ that was gone
+  int held_back_ = 0;
+};
 
 }  // namespace
 
@@ -77,72 +286,30 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
 }
 
 std::size_t NewtonWorkspace::bytes() const {
-  const std::size_t vectors = x.capacity() + g.capacity() + s.capacity() + end.capacity();
+  std::size_t vectors = 0;
+  for (const auto* v : {&x, &g, &s, &base, &d, &z, &end}) vectors += v->capacity();
   return vectors * sizeof(Vec3) + inner.bytes();
 }
 
-StepReport minimize(const IncrementalPotential& function, const SolverSettings& settings,
-                    const IncrementalPotential::Evaluation& start, Vectors x, NewtonWorkspace& workspace) {
-  const std::size_t count = function.size();
-  auto& [other, g, s, end, inner] = workspace;
-  for (auto* vectors : {&other, &s}) vectors->resize(count);
-  Point point{x, start};
-  Vectors room = other;
-
-  inner.begin_step();
-  StepReport report;
-  double forcing = loosest_forcing;
-  double shrink = 1;       // of the gradient in the last step
-  bool as_before = false;  // whether H is that of the last step
-  double floor = 0;        // of the imbalance
-  for (;;) {
-    const IncrementalPotential::Imbalance imbalance = point.at.imbalance;
-    report.residual = imbalance.largest;
-    report.worst_vertex = imbalance.vertex;
-    report.converged = imbalance.largest <= settings.tolerance;
-    if (report.converged) break;
-    as_before =
-        !as_before && shrink <= slightest_change && ample * shrink * imbalance.largest <= settings.tolerance;
-    if (!as_before) {
-      inner.linearize(function, point.x);
-      floor = function.rounding_floor(point.x, inner.stiffest());
+int snap_to_targets(const StepProblem& problem, Vectors x) {
+  constexpr double near = 1e-14;
+  int held_back = 0;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (problem.fixed[v] == 0) continue;
+    const Vec3& target = problem.targets[v];
+    if (!problem.guard || (x[v] - target).cwiseAbs().maxCoeff() <= near * target.cwiseAbs().maxCoeff()) {
+      x[v] = target;
+    } else {
+      ++held_back;
     }
-    if (imbalance.largest <= floor) {
-      report.converged = true;
-      break;
-    }
-    if (report.newton_iterations == settings.max_iterations) {
-      report.failure = "the step is not in balance after " + std::to_string(report.newton_iterations) +
-                       " Newton iterations";
-      break;
-    }
-
-    LinearSettings linear;
-    linear.tolerance = std::max(forcing, 0.3 * settings.tolerance / imbalance.largest);
-    linear.tolerance = std::min(linear.tolerance, loosest_forcing);
-    ++report.newton_iterations;
-    const auto move = [&] {
-      report.linear_iterations += solve_linear(function, point.x, g, linear, inner, s).iterations;
-      const double slope = negate_and_dot(g, s);
-      return slope < 0 && line_search(function, s, slope, point, g, room);
-    };
-    bool moved = move();
-    if (!moved && as_before) inner.linearize(function, point.x);
-    if (!moved && (as_before || inner.project())) {
-      function.gradient(point.x, g);  // which a search that failed has overwritten
-      as_before = false;
-      moved = move();
-    }
-    if (!moved) {
-      report.failure = "no step lowers the energy any further";
-      break;
-    }
-    // Eisenstat and Walker's second choice with exponent 2: loose far from the solution, quadratic near it.
-    shrink = point.at.imbalance.norm / imbalance.norm;
-    forcing = std::clamp(0.9 * shrink * shrink, 1e-4, loosest_forcing);
   }
-  if (point.x.data() != x.data()) std::copy(point.x.begin(), point.x.end(), x.begin());
-  return report;
+  return held_back;
+}
+
+StepReport minimize(const StepProblem& problem, const IncrementalPotential& function,
+                    const SolverSettings& settings, const State& state, double length, Vectors x,
+                    NewtonWorkspace& workspace) {
+  return Newton(problem, function, settings, state, length, x, workspace).run();
 }
 
 }  // namespace muslin

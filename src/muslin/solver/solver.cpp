@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "muslin/core/error.hpp"
 #include "muslin/solver/conjugate_gradient.hpp"
-#include "muslin/solver/guarded_newton.hpp"
 #include "muslin/solver/incremental_potential.hpp"
 #include "muslin/solver/inner_solver.hpp"
 #include "muslin/solver/newton.hpp"
@@ -19,73 +17,12 @@
 namespace muslin {
 namespace {
 
-StepReport failed(std::string why) {
-  StepReport report;
-  report.failure = std::move(why);
-  return report;
-}
-
-/// A start for the minimisation, evaluated there: extrapolated with the change of velocity of the last step,
-/// or the inertial prediction where that is lower; never past what the potentials allow. None if held
-/// vertices cannot move to their targets safely or no start has a finite value.
-std::optional<IncrementalPotential::Evaluation> warm_start(const IncrementalPotential& function,
-                                                           const StepProblem& problem, const State& state,
-                                                           double dt, NewtonWorkspace& workspace,
-                                                           std::vector<Vec3>& x) {
-  const std::size_t count = function.size();
-  std::vector<Vec3>&d = workspace.s, &other = workspace.x;
-  for (auto* vectors : {&x, &d, &other, &workspace.g}) vectors->resize(count);
-  /// `to` becomes candidate(v), or as much of the way there as is safe; false if held vertices cannot follow.
-  const auto go = [&](const auto& candidate, Vectors to) {
-    for_each_vertex(count, [&](std::size_t v) {
-      to[v] = function.held(v) ? problem.targets[v] : Vec3(candidate(v));
-      d[v] = to[v] - state.positions[v];
-    });
-    const double safe = function.max_step(state.positions, d);
-    if (safe >= 1) return true;
-    for (std::size_t v = 0; v < count; ++v) {
-      if (!function.held(v)) d[v] *= 0.9 * safe;
-    }
-    if (function.max_step(state.positions, d) < 1) return false;
-    for (std::size_t v = 0; v < count; ++v) {
-      if (!function.held(v)) to[v] = state.positions[v] + d[v];
-    }
-    return true;
-  };
-  IncrementalPotential::Evaluation best;
-  best.value.value = INFINITY;
-  const auto extrapolated = [&](std::size_t v) {
-    return state.positions[v] + 2 * dt * state.velocities[v] - dt * state.previous_velocities[v];
-  };
-  if (!state.previous_velocities.empty() && go(extrapolated, x)) {
-    // Nearly always the better start: its gradient is worth computing along with the value.
-    best = function.evaluate(x, workspace.g);
-    if (!(best.value.value < INFINITY)) best.value.value = INFINITY;
-    // The prediction is not lower, unless by what is not convex.
-    if (best.value.value < INFINITY && best.prediction_above >= 0) return best;
-  }
-  const auto consider = [&](const auto& candidate) {
-    if (!go(candidate, other) || !(function.value(other).value < best.value.value)) return;
-    std::swap(x, other);
-    best = function.evaluate(x, workspace.g);
-  };
-  consider([&](std::size_t v) { return function.prediction()[v]; });
-  if (best.value.value == INFINITY) consider([&](std::size_t v) { return state.positions[v]; });
-  if (best.value.value == INFINITY) return std::nullopt;
-  return best;
-}
-
 StepReport solve_implicit(const SolverSettings& settings, const StepContext& context,
                           const StepProblem& problem, const State& state, NewtonWorkspace& workspace,
                           std::vector<Vec3>& x) {
   const IncrementalPotential function(problem, context.inertial_prediction, context.dt);
-  if (problem.guard) {
-    x = state.positions;
-    return minimize_guarded(problem, function, settings, state, context.length, x, workspace);
-  }
-  const auto start = warm_start(function, problem, state, context.length, workspace, x);
-  if (!start) return failed("the held vertices cannot reach their targets within this step");
-  return minimize(function, settings, *start, x, workspace);
+  x = state.positions;
+  return minimize(problem, function, settings, state, context.length, x, workspace);
 }
 
 /// Solves H s = b to a relative residual of `tolerance` in the norm of the preconditioner, whatever the
@@ -158,7 +95,7 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
   if (problem.guard) {
     add(1, s, coast);
     if (all_finite(coast)) problem.guard->advance(x, coast);
-    report.held_back = land_held_vertices(problem, x);
+    report.held_back = snap_to_targets(problem, x);
   } else {
     add(1, coast, x);
     add(1, s, x);

@@ -56,13 +56,18 @@ struct StepProblem {
   /// #V by 3 [m], the same from step to step: what is near each other here moves alike. Without them no
   /// coarse space helps to solve for the smooth part of the motion.
   ConstVectors rest_positions = {};
+  /// #V, the part of the model that each vertex belongs to, connected within; empty: all of one.
+  std::span<const int> parts = {};
+  std::span<const double> accelerations = {};  ///< by part, root mean square of what loads cause [m/s²]
+  std::span<const double> edges = {};          ///< by part, typical distance of neighbours [m]
 };
 
 struct StepReport {
-  bool converged = false;  ///< in balance; a fast step may be made without
+  bool converged = false;  ///< within the tolerance
   int newton_iterations = 0;
   int linear_iterations = 0;
-  double residual = 0;                              ///< in the unit of SolverSettings::tolerance
+  double residual = 0;                              ///< max ‖∂E/∂xᵢ‖ / (mᵢ dt²) [m/s²]
+  double error = 0;                                 ///< estimate of how far from the minimum, as motion [m]
   int worst_vertex = -1;                            ///< where the residual is largest
   int held_back = 0;                                ///< held vertices that a guard keeps from their targets
   double linearize_seconds = 0, solve_seconds = 0;  ///< spent under a guard on Hessians and linear systems

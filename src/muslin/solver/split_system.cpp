@@ -248,9 +248,14 @@ double SplitSystem::add_rest_product() {
   return curvature;
 }
 
-void SplitSystem::solution(double alpha, double scale, Vectors s) {
+void SplitSystem::precondition(double scale, Vectors z) { solve_backward(1, r_, scale, z); }
+
+void SplitSystem::solution(double alpha, double scale, Vectors s) { solve_backward(alpha, p_, scale, s); }
+
+/// s = scale · F⁻ᵀ (x̂ + alpha p).
+void SplitSystem::solve_backward(double alpha, const float* p, double scale, Vectors s) {
   backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    sweep_kernels::kernels().solve_backward(sweep, static_cast<float>(alpha), x_ + offset, p_ + offset);
+    sweep_kernels::kernels().solve_backward(sweep, static_cast<float>(alpha), x_ + offset, p + offset);
     return 0.0;
   });
   const Floats t = flat_.data();

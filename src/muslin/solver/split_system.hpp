@@ -49,6 +49,9 @@ class SplitSystem {
   /// r = F r̂ after `start` or `residual`.
   void find_product();
 
+  /// After `start`: z = scale · F⁻ᵀ r̂, #V by 3.
+  void precondition(double scale, Vectors z);
+
   /// s = scale · F⁻ᵀ (x̂ + alpha p̂), #V by 3.
   void solution(double alpha, double scale, Vectors s);
 
@@ -68,6 +71,7 @@ class SplitSystem {
   template <class Value, class Body>
   void for_each_vertex(const Value* by_vertex, const Body& body) const;
   double add_rest_product();
+  void solve_backward(double alpha, const float* p, double scale, Vectors s);
   void arrange_identity();
 
   Linearization* h_ = nullptr;

@@ -1,0 +1,80 @@
+#include "muslin/cache/run_quality.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+namespace muslin {
+namespace {
+
+constexpr double share_to_warn = 0.01;  // of the steps
+constexpr std::size_t most_ranges = 8;
+
+bool ends_in(const std::vector<int>& frames, int last) { return !frames.empty() && frames.back() == last; }
+
+std::string missed_text(const RunQuality& quality) {
+  return fmt::format(
+      "{} of {} steps missed their tolerance, in {}; the largest estimate of their error is {:.2g} m; raise "
+      "time.steps_per_frame, or look at what happens there",
+      quality.steps - quality.converged_steps, quality.steps, describe_frames(quality.frames_missed),
+      quality.worst_error);
+}
+
+std::string held_back_text(const RunQuality& quality) {
+  return fmt::format(
+      "pins or colliders that move could not follow their keyframes in {}: something held back up to {} of "
+      "their vertices; {}",
+      describe_frames(quality.frames_held_back), quality.most_held_back,
+      ends_in(quality.frames_held_back, quality.last_frame) ? "they still are behind" : "they have caught up");
+}
+
+std::string crossings_text(const RunQuality& quality) {
+  return fmt::format("{} of triangles still {} at the end; more frames may part them",
+                     quality.crossings_at_end == 1 ? "1 pair" : fmt::format("{} pairs", quality.crossings_at_end),
+                     quality.crossings_at_end == 1 ? "crosses" : "cross");
+}
+
+}  // namespace
+
+void RunQuality::add(const Diagnostics& row) {
+  steps += row.steps;
+  converged_steps += row.converged_steps;
+  worst_error = std::max(worst_error, row.error);
+  if (row.converged_steps < row.steps) frames_missed.push_back(row.frame);
+  if (row.held_back > 0) frames_held_back.push_back(row.frame);
+  most_held_back = std::max(most_held_back, row.held_back);
+  if (row.crossings > 0) frames_crossing.push_back(row.frame);
+  crossings_at_end = row.crossings;
+  last_frame = row.frame;
+}
+
+std::string describe_frames(const std::vector<int>& frames) {
+  std::vector<std::string> ranges;
+  std::size_t told = 0;
+  while (told < frames.size() && ranges.size() < most_ranges) {
+    std::size_t end = told + 1;
+    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
+    ranges.push_back(end - told == 1 ? std::to_string(frames[told])
+                                     : fmt::format("{} to {}", frames[told], frames[end - 1]));
+    told = end;
+  }
+  if (told < frames.size()) ranges.push_back(fmt::format("{} more", frames.size() - told));
+  std::string text = frames.size() == 1 ? "frame " : "frames ";
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == ranges.size() ? " and " : ", ") + ranges[i];
+  return text;
+}
+
+std::vector<std::string> warnings_of(const RunQuality& quality) {
+  std::vector<std::string> warnings;
+  const auto missed = static_cast<double>(quality.steps - quality.converged_steps);
+  if (missed > share_to_warn * static_cast<double>(quality.steps) ||
+      ends_in(quality.frames_missed, quality.last_frame))
+    warnings.push_back(missed_text(quality));
+  if (!quality.frames_held_back.empty()) warnings.push_back(held_back_text(quality));
+  if (quality.crossings_at_end > 0) warnings.push_back(crossings_text(quality));
+  return warnings;
+}
+
+}  // namespace muslin

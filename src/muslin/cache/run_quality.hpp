@@ -1,0 +1,33 @@
+// How far the frames of a run can be trusted: what missed its tolerance, was held back or crosses.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "muslin/simulation/diagnostics.hpp"
+
+namespace muslin {
+
+/// Summed over the rows of diagnostics.csv, those of earlier sessions as well.
+struct RunQuality {
+  std::int64_t steps = 0, converged_steps = 0;
+  double worst_error = 0;         ///< [m]
+  std::vector<int> frames_missed;  ///< with steps that missed their tolerance
+  std::vector<int> frames_held_back;  ///< at whose end pins or colliders were behind their keyframes
+  int most_held_back = 0;             ///< vertices, in the worst frame
+  std::vector<int> frames_crossing;   ///< at whose end triangles cross
+  int crossings_at_end = 0;           ///< pairs of triangles
+  int last_frame = 0;
+
+  void add(const Diagnostics& row);
+};
+
+/// "frame 3", "frames 12 to 15 and 20"; of many, the first ranges and how many frames more. `frames` ascend
+/// and are not empty.
+std::string describe_frames(const std::vector<int>& frames);
+
+/// What the user of the run should know, a sentence each; none if all is well.
+std::vector<std::string> warnings_of(const RunQuality& quality);
+
+}  // namespace muslin

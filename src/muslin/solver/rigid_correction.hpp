@@ -1,0 +1,23 @@
+// Linear and angular momentum, exactly, however loosely a step was solved.
+//
+// Forces within bodies and between them sum to zero, and so do their torques. The momenta that a step ends
+// with are therefore right if and only if Σ g = 0 and Σ r × g = 0, g the gradient of the incremental
+// potential: six equations for each group of bodies that touch, which six rigid motions of the group solve
+// while no distance within it changes. docs/theory/solver.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/potential/step_guard.hpp"
+#include "muslin/solver/incremental_potential.hpp"
+
+namespace muslin {
+
+/// Moves every group of parts that is not held by the rigid motion that its momenta lack; along what it
+/// touches that does not move, and about that, it stays. g is the gradient at x.
+void correct_rigid_motions(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
+                           ConstVectors g, ConstVectors from, Vectors x);
+
+}  // namespace muslin

@@ -1,0 +1,117 @@
+#include "muslin/solver/step_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace muslin {
+namespace {
+
+/// Error of one vertex over that of its part.
+constexpr double local_share = 0.1;
+/// The share of an edge that is always good enough.
+constexpr double smallest = 1e-10;
+/// Work of the residual, as a share of what moves, over the tolerance.
+constexpr double leak_share = 0.01;
+constexpr double slowest = 0.9;
+
+}  // namespace
+
+StepError::StepError(const StepProblem& problem, const IncrementalPotential& function, double tolerance)
+    : problem_(problem), function_(function), tolerance_(tolerance) {
+  std::size_t count = 1;
+  for (const int part : problem.parts) count = std::max(count, static_cast<std::size_t>(part) + 1);
+  parts_.resize(count);
+  for (std::size_t v = 0; v < function.size(); ++v)
+    if (!function.held(v)) parts_[part_of(v)].mass += problem.masses[v];
+}
+
+void StepError::find_allowed(ConstVectors x) {
+  std::vector<double> squares(parts_.size(), 0.0);
+  const double dt = function_.dt();
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (!function_.held(v))
+      squares[part_of(v)] += problem_.masses[v] * (x[v] - function_.prediction()[v]).squaredNorm();
+  }
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    Part& part = parts_[p];
+    if (!(part.mass > 0)) continue;
+    double motion = std::sqrt(squares[p] / part.mass);
+    if (p < problem_.accelerations.size()) motion = std::max(motion, problem_.accelerations[p] * dt * dt);
+    const double edge = p < problem_.edges.size() ? problem_.edges[p] : motion;
+    part.allowed = std::max(tolerance_ * std::min(motion, edge), smallest * edge);
+  }
+}
+
+bool StepError::bound(ConstVectors x, ConstVectors g) {
+  find_allowed(x);
+  std::vector<double> squares(parts_.size(), 0.0);
+  for (std::size_t v = 0; v < g.size(); ++v) squares[part_of(v)] += g[v].squaredNorm() / problem_.masses[v];
+  bool good = true;
+  largest_ = 0;
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    if (!(parts_[p].mass > 0)) continue;
+    const double error = std::sqrt(squares[p] / parts_[p].mass);
+    largest_ = std::max(largest_, error);
+    good = good && error <= local_share * parts_[p].allowed;
+  }
+  return good;
+}
+
+void StepError::begin(ConstVectors g, ConstVectors z) {
+  for (Part& part : parts_) part.norm = 0;
+  for (std::size_t v = 0; v < g.size(); ++v) parts_[part_of(v)].norm += g[v].dot(z[v]);
+}
+
+bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVectors z, ConstVectors s,
+                    ConstVectors d, double t) {
+  struct Sums {
+    double norm = 0, step = 0, cut = 0, largest_step = 0, largest_cut = 0, leak = 0, moved = 0;
+  };
+  find_allowed(x);
+  std::vector<Sums> sums(parts_.size());
+  for (std::size_t v = 0; v < g.size(); ++v) {
+    if (function_.held(v)) continue;
+    Sums& sum = sums[part_of(v)];
+    const double m = problem_.masses[v], step = s[v].squaredNorm(), cut = (s[v] - t * d[v]).squaredNorm();
+    const Vec3 way = x[v] - from[v];
+    sum.norm += g[v].dot(z[v]);
+    sum.step += m * step;
+    sum.cut += m * cut;
+    sum.largest_step = std::max(sum.largest_step, step);
+    sum.largest_cut = std::max(sum.largest_cut, cut);
+    sum.leak += g[v].dot(way);
+    sum.moved += m * way.squaredNorm();
+  }
+  bool good = true;
+  largest_ = worst_ratio_ = 0;
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const Part& part = parts_[p];
+    const Sums& sum = sums[p];
+    if (!(part.mass > 0)) continue;
+    const double ratio = part.norm > 0 ? std::sqrt(std::max(0.0, sum.norm) / part.norm) : 0;
+    const double left = ratio / (1 - std::min(ratio, slowest));
+    const double mean = (left * std::sqrt(sum.step) + std::sqrt(sum.cut)) / std::sqrt(part.mass);
+    const double local = left * std::sqrt(sum.largest_step) + std::sqrt(sum.largest_cut);
+    const double error = std::max(mean, local_share * local);
+    const double moved = sum.moved + part.mass * part.allowed * part.allowed / (tolerance_ * tolerance_);
+    good = good && error <= part.allowed && sum.leak <= leak_share * tolerance_ * moved;
+    if (error >= worst_ratio_ * part.allowed) {
+      worst_ratio_ = error / part.allowed;
+      largest_ = error;
+      allowed_ = part.allowed;
+      step_ = std::sqrt(sum.largest_step);
+      cut_ = std::sqrt(sum.largest_cut);
+    }
+  }
+  return good;
+}
+
+void StepError::give_up(ConstVectors s) {
+  largest_ = 0;
+  for (std::size_t v = 0; v < s.size(); ++v)
+    if (!function_.held(v)) largest_ = std::max(largest_, local_share * s[v].norm());
+}
+
+double StepError::wanted_forcing() const { return worst_ratio_ > 0 ? 0.3 / worst_ratio_ : 1; }
+
+}  // namespace muslin
