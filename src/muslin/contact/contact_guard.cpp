@@ -86,7 +86,7 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
       edge_(mean_edge(*model_)),
       longest_(std::max(edges_at_once * edge_, 4 * model_->distance)),
       longest_push_(pushed_at_once * longest_),
-      friction_{model_->friction, stick_speed},
+      friction_{model_->friction, stick_speed, 1},
       x_(model_->map->point_count()),
       to_(model_->map->point_count()) {
   for (const ContactBody& body : model_->surface->bodies()) {
@@ -103,6 +103,7 @@ void ContactGuard::begin(ConstVectors q, double length, std::span<const std::uin
   forget_renewed();
   start_.assign(q.begin(), q.end());
   friction_.stick_length = stick_speed * length;
+  friction_.dt = length;
   held_.assign(held.begin(), held.end());
   const std::vector<std::uint8_t>& prescribed = model_->limits.prescribed;
   for (std::size_t v = 0; v < prescribed.size(); ++v) held_[v] |= prescribed[v];

@@ -67,7 +67,7 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
       distances.points().size() != map_->point_count())
     throw Error(ErrorKind::usage, "a contact potential needs one position for each vertex",
                 "give #V positions");
-  terms_ = contact_terms(distances);
+  terms_ = contact_terms(distances, friction.dt);
   contacts_ = merged_contacts(*surface_, terms_, lagged_);
   std::vector<Vec3> start_buffer;
   const ConstVectors x_start = points(start, start_buffer);

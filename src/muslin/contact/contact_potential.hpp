@@ -31,6 +31,7 @@ namespace muslin {
 struct Friction {
   double coefficient = 0;      ///< Coulomb's μ of bodies without one of their own
   double stick_length = 4e-6;  ///< slip at which friction is full [m]: ε_v dt, for instance 1 mm/s · 1/240 s
+  double dt = 1.0 / 240;       ///< length of the step [s]
 };
 
 /// The slip of a pair that sticks or slides, by ContactPair::key(); part of the moving state.

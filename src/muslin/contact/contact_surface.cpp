@@ -8,6 +8,11 @@
 #include "muslin/core/error.hpp"
 
 namespace muslin {
+namespace {
+
+bool is_infinite(const ContactBody& body) { return !(body.mass > 0) && std::isinf(body.stiffness); }
+
+}  // namespace
 
 ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
                                std::vector<ContactBody> bodies, std::vector<ContactPlane> planes)
@@ -28,15 +33,15 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
     if (!(body.radius >= 0)) throw Error(ErrorKind::usage, "a contact radius is negative", "give 0 or more");
     if (body.friction && !(*body.friction >= 0))
       throw Error(ErrorKind::usage, "a friction coefficient is negative", "give 0 or more");
-    if (!(body.stiffness > 0))
+    if (!(body.stiffness > 0) && !(body.mass > 0))
       throw Error(ErrorKind::usage, "a contact stiffness is not positive", "give newtons per metre");
     if (*std::min_element(body.frame.begin(), body.frame.end()) < 0 &&
         *std::max_element(body.frame.begin(), body.frame.end()) >= 0)
       throw Error(ErrorKind::usage, "a body's frame lacks a vertex", "give four or none");
   }
   for (std::size_t a = 0; a < bodies_.size(); ++a) {
-    for (std::size_t b = a; b < bodies_.size() && std::isinf(bodies_[a].stiffness); ++b) {
-      if (std::isinf(bodies_[b].stiffness) && may_touch(static_cast<int>(a), static_cast<int>(b)))
+    for (std::size_t b = a; b < bodies_.size() && is_infinite(bodies_[a]); ++b) {
+      if (is_infinite(bodies_[b]) && may_touch(static_cast<int>(a), static_cast<int>(b)))
         throw Error(ErrorKind::usage, "two bodies that may touch have infinite contact stiffness",
                     "give one of them newtons per metre");
     }

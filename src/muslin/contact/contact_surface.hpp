@@ -31,6 +31,8 @@ struct ContactBody {
   std::array<int, 4> frame = {-1, -1, -1, -1};
   /// Coulomb's μ of this body; none: the one of all that have none. That of a pair is the geometric mean.
   std::optional<double> friction = std::nullopt;
+  /// Above 0: the stiffness is what stops this mass within a step, 4 m/dt², whatever `stiffness` says [kg].
+  double mass = 0;
 };
 
 /// A half-space that nothing enters: gap = normal·(x − x_point). The plane moves with its point.
@@ -78,9 +80,10 @@ class ContactSurface {
                       &b = bodies_[static_cast<std::size_t>(body_b)];
     return body_a == body_b ? a.self_contact && !a.fixed : !(a.fixed && b.fixed);
   }
-  /// Of a contact between the bodies of two points [N/m].
-  double stiffness(int point_a, int point_b) const {
-    return std::min(body_at(point_a).stiffness, body_at(point_b).stiffness);
+  /// Of a contact between the bodies of two points in a step of `dt` [s] [N/m].
+  double stiffness(int point_a, int point_b, double dt) const {
+    const auto of = [dt](const ContactBody& b) { return b.mass > 0 ? 4 * b.mass / (dt * dt) : b.stiffness; };
+    return std::min(of(body_at(point_a)), of(body_at(point_b)));
   }
   /// Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that bodies of one μ have that μ between
   /// them, and what is smooth slides on everything. `common` is that of bodies without one of their own.

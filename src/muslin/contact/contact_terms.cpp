@@ -72,8 +72,8 @@ bool is_near(double gap, double range) { return gap > 0 && gap < PairDistances::
 /// The terms of one vertex against the triangles of `pairs`.
 class VertexTerms {
  public:
-  VertexTerms(const PairDistances& distances, std::vector<ContactTerm>& out)
-      : surface_(distances.candidates().surface()), distances_(distances), out_(out) {}
+  VertexTerms(const PairDistances& distances, double dt, std::vector<ContactTerm>& out)
+      : surface_(distances.candidates().surface()), distances_(distances), dt_(dt), out_(out) {}
 
   void add(std::span<const int> pairs) {
     edges_.clear();
@@ -93,7 +93,7 @@ class VertexTerms {
       const double range = range_of(surface_, pair, distances_.points());
       if (range > 0) {
         out_.push_back({ContactTerm::Kind::vertex_triangle, pair.points, -1, pair.key(), pair.thickness,
-                        range, surface_.stiffness(pair.points[0], pair.points[3])});
+                        range, surface_.stiffness(pair.points[0], pair.points[3], dt_)});
       }
     }
     const ContactPair& first = all[static_cast<std::size_t>(pairs[0])];
@@ -128,7 +128,7 @@ class VertexTerms {
       term.key = ContactPair::key_of(PairKind::vertex_triangle, corner.index, surface_.round_triangle(v));
       term.thickness = pair.thickness;
       term.range = pair.range;
-      term.stiffness = surface_.stiffness(v, corner.index);
+      term.stiffness = surface_.stiffness(v, corner.index, dt_);
       const double gap = term_geometry(surface_, term, distances_.points()).distance - term.thickness;
       if (is_near(gap, term.range)) out_.push_back(term);
     }
@@ -161,7 +161,7 @@ class VertexTerms {
                               0,
                               feature.thickness,
                               feature.range,
-                              coefficient * surface_.stiffness(points[0], points[1])};
+                              coefficient * surface_.stiffness(points[0], points[1], dt_)};
     if (!(term.range > 0)) return;
     const double gap = term_geometry(surface_, term, distances_.points()).distance - term.thickness;
     if (is_near(gap, term.range)) out_.push_back(term);
@@ -169,6 +169,7 @@ class VertexTerms {
 
   const ContactSurface& surface_;
   const PairDistances& distances_;
+  double dt_;
   std::vector<ContactTerm>& out_;
   std::vector<Feature> edges_, corners_;
 };
@@ -234,7 +235,7 @@ PairGeometry term_geometry(const ContactSurface& surface, const ContactTerm& ter
   return of_difference(c.difference, c.weights);
 }
 
-std::vector<ContactTerm> contact_terms(const PairDistances& distances) {
+std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt) {
   const ContactSurface& surface = distances.candidates().surface();
   const std::span<const ContactPair> pairs = distances.candidates().pairs();
   const std::size_t blocks = (pairs.size() + grain - 1) / grain;
@@ -256,7 +257,7 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances) {
         continue;
       }
       const double stiffness =
-          surface.stiffness(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)]);
+          surface.stiffness(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)], dt);
       if (pair.kind == PairKind::point_plane) {
         terms.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness,
                          pair.range, stiffness});
@@ -275,7 +276,7 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances) {
   std::sort(of_vertices.begin(), of_vertices.end(), [&](int i, int j) {
     return std::pair(pair_of(i).first, pair_of(i).second) < std::pair(pair_of(j).first, pair_of(j).second);
   });
-  VertexTerms of_vertex(distances, terms);
+  VertexTerms of_vertex(distances, dt, terms);
   for (std::size_t begin = 0; begin < of_vertices.size();) {
     std::size_t end = begin + 1;
     while (end < of_vertices.size() && pair_of(of_vertices[end]).first == pair_of(of_vertices[begin]).first)

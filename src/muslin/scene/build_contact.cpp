@@ -21,7 +21,6 @@ constexpr double size_share = 1.0 / 500, edge_share = 0.2;  // of d̂
 constexpr double thin = 5e-4, thin_share = 0.1;             // thickness of shells: [m], of the mean edge
 constexpr double stiffness_share = 0.15;
 constexpr double floor_share = 0.005;       // of the gap floor, in d̂
-constexpr double longest_step = 1.0 / 150;  // beyond this the fast mode is not what it could be [s]
 
 double lattice_stiffness(const Body& body, const BodySettings& settings) {
   const Material& m = settings.material;
@@ -51,7 +50,6 @@ class ContactBuilder {
       if (scene_.colliders[c].contact) add_collider(model_.collider(c), scene_.colliders[c]);
     if (!can_touch()) return;
     finish();
-    warn();
   }
 
  private:
@@ -83,7 +81,7 @@ class ContactBuilder {
       contact.stiffness = lattice_stiffness(body, settings);
     }
     // What does not resist stretch at all still has weight to be held up.
-    if (!(contact.stiffness > 0)) contact.stiffness = stiffness_of_mass(body);
+    if (!(contact.stiffness > 0)) contact.mass = mean_mass(body);
     note_size(body, edge);
     add_mesh(body, cut, contact);
     if (body.has_lattice() && edge > 2 * body.lattice.width) {
@@ -94,13 +92,12 @@ class ContactBuilder {
     }
   }
 
-  /// What stops the mean mass of a vertex within a step [N/m].
-  double stiffness_of_mass(const Body& body) const {
+  /// Of a vertex [kg].
+  double mean_mass(const Body& body) const {
     const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
-    const double mass = std::accumulate(model_.masses.begin() + first,
-                                        model_.masses.begin() + first + body.vertex_count, 0.0) /
-                        body.vertex_count;
-    return 4 * mass / (scene_.time.step() * scene_.time.step());
+    return std::accumulate(model_.masses.begin() + first, model_.masses.begin() + first + body.vertex_count,
+                           0.0) /
+           body.vertex_count;
   }
 
   void add_collider(const Body& body, const ColliderSettings& settings) {
@@ -113,8 +110,7 @@ class ContactBuilder {
     if (body.prescribed) std::fill_n(prescribed_.begin() + body.first_vertex, body.vertex_count, 1);
     if (body.is_rigid()) std::fill_n(groups_.begin() + body.first_vertex, body.vertex_count, group_count_++);
     if (!body.prescribed) {
-      const double step = scene_.time.step();
-      contact.stiffness = 4 * model_.masses[first] / (step * step);
+      contact.mass = model_.masses[first];
       note_size(body, body.mean_edge);
     }
     switch (settings.shape) {
@@ -224,7 +220,6 @@ class ContactBuilder {
     model->distance =
         scene_.contact.distance.value_or(std::min(size_share * largest_, edge_share * shortest_edge_));
     model->friction = scene_.contact.friction;
-    model->mode = scene_.contact.mode;
     model->limits.gap_floor = floor_share * model->distance;
     model->limits.prescribed = std::move(prescribed_);
     model->limits.groups = std::move(groups_);
@@ -245,16 +240,6 @@ class ContactBuilder {
     for (std::size_t i = 0; i < entries_.size(); ++i)
       if (entries_[i].vertex != static_cast<int>(i) || entries_[i].weight != 1) return false;
     return true;
-  }
-
-  void warn() const {
-    if (scene_.contact.mode == ContactMode::fast && scene_.time.step() > longest_step) {
-      model_.warnings.push_back(
-          fmt::format("contact: steps of {:.3g} s are long for `mode = \"fast\"`; set `steps_per_frame` to "
-                      "at least {:.0f}, "
-                      "or take `mode = \"converged\"`",
-                      scene_.time.step(), std::ceil(1 / (scene_.time.frame_rate * longest_step))));
-    }
   }
 
   Model& model_;

@@ -140,15 +140,25 @@ class BodyMaterial {
 /// g through a point of its surface is dented there by about 5 g step²/1000, 1 µm at steps of 1/240 s.
 constexpr double rigidity = 1000;
 
+class Rigidity : public Load {
+ public:
+  Rigidity(const Vec3& radii, double stiffness) : radii_(radii), stiffness_(stiffness) {}
+  std::unique_ptr<Potential> potential(const StepContext& step) const override {
+    return std::make_unique<AffineBodyEnergy>(radii_, stiffness_ / (step.length * step.length));
+  }
+
+ private:
+  Vec3 radii_;
+  double stiffness_;  ///< in steps of 1 s
+};
+
 void add_rigidity(Model& model, const Body& body) {
   const auto first = static_cast<std::size_t>(body.first_vertex),
              count = static_cast<std::size_t>(body.vertex_count);
-  const double step = model.scene.time.step();
-  model.potentials.push_back({body.name + ": rigidity", EnergyRole::elastic,
-                              std::make_shared<RestrictedPotential>(
-                                  std::make_shared<AffineBodyEnergy>(
-                                      body.frame.radii, rigidity * body.statistics.mass / (step * step)),
-                                  first, count)});
+  model.loads.push_back(
+      {body.name + ": rigidity", EnergyRole::elastic,
+       std::make_shared<RestrictedLoad>(
+           std::make_shared<Rigidity>(body.frame.radii, rigidity * body.statistics.mass), first, count)});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "muslin/simulation/advance.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "muslin/solver/rigid_prediction.hpp"
@@ -18,6 +19,9 @@ void add(const ContactCounts& counts, RunCosts& costs) {
   costs.shortened += static_cast<std::int64_t>(counts.shortened);
 }
 
+/// A step that missed its tolerance is tried in halves so often before it is taken as it is.
+constexpr int patient_halvings = 2;
+
 class Advance {
  public:
   Advance(const Model& model, const Terms& terms, RunState& state, Scratch& scratch)
@@ -25,25 +29,30 @@ class Advance {
         terms_(terms),
         state_(state),
         scratch_(scratch),
-        guard_(scratch.guard(model, state)),
-        fast_contact_(guard_ && model.contact->mode == ContactMode::fast) {}
+        guard_(scratch.guard(model, state)) {}
 
   StepReport by(double length, int halvings = 0) {
     const State before = state_.motion;
-    SolverSettings settings = model_.scene.solver;
-    if (fast_contact_) settings.effort = Effort::fast;
+    const ContactMemory contact = state_.contact;
+    const SolverSettings& settings = model_.scene.solver;
     StepContext context = step_context(settings.integrator, before, length);
     const auto loads = terms_.potentials_of_loads(context);
     Holds next = hold(context, before);
     predict(settings.integrator, before, context);
 
-    StepProblem problem{scratch_.masses, {}, scratch_.fixed, scratch_.targets, guard_, model_.rest_positions};
+    const std::vector<double> accelerations =
+        driving_accelerations(model_, terms_, loads, before.positions, scratch_);
+    StepProblem problem{scratch_.masses, {}, scratch_.fixed, scratch_.targets, guard_, model_.rest_positions,
+                        scratch_.parts.of_vertex, accelerations, scratch_.parts.edges};
     for (const PotentialTerm& term : terms_.potentials) problem.potentials.push_back(term.potential.get());
     for (const auto& load : loads)
       if (load) problem.potentials.push_back(load.get());
     StepReport report = scratch_.stepper.step(settings, context, problem, state_.motion);
-    count(report);
-    if (!report.made()) {
+    const bool missed = report.made() && !report.converged && halvings < patient_halvings &&
+                        settings.integrator != Integrator::linearly_implicit_euler;
+    if (missed) take_back(before, contact);
+    count(report, report.made() && !missed);
+    if (!report.made() || missed) {
       if (halvings == max_halvings) return report;
       report = by(length / 2, halvings + 1);
       return report.made() ? by(length / 2, halvings + 1) : report;
@@ -57,14 +66,19 @@ class Advance {
     solved.after = &state_.motion;
     solved.masses = model_.masses;
     solved.fixed = scratch_.fixed;
-    // Fast steps do not obey their equation closely enough for a balance to be a check: what is stored is
-    // known by its values, which saves most of the work.
-    const bool by_values = fast_contact_;
-    state_.energy.enter(terms_, solved, loads, guard_ ? &guard_->last_potential() : nullptr, by_values);
+    state_.energy.enter(terms_, solved, loads, guard_ ? &guard_->last_potential() : nullptr);
     return report;
   }
 
  private:
+  /// Undoes a step that was made but is not wanted.
+  void take_back(const State& before, const ContactMemory& contact) {
+    state_.motion = before;
+    state_.contact = contact;
+    scratch_.forget_guard();
+    guard_ = scratch_.guard(model_, state_);
+  }
+
   /// Decides what is held, and where, at the end of the step.
   Holds hold(const StepContext& context, const State& before) {
     Holds next = state_.holds;
@@ -82,13 +96,16 @@ class Advance {
     }
   }
 
-  void count(const StepReport& report) {
+  void count(const StepReport& report, bool made) {
     FrameCounts& counts = state_.counts;
     counts.newton += report.newton_iterations;
     counts.linear += report.linear_iterations;
     scratch_.linearize_seconds += report.linearize_seconds;
     scratch_.solve_seconds += report.solve_seconds;
-    if (!report.made()) return;
+    if (!made) return;
+    ++counts.steps;
+    counts.converged_steps += report.converged ? 1 : 0;
+    counts.error = std::max(counts.error, report.error);
     counts.residual = std::max(counts.residual, report.residual);
     counts.held_back = report.held_back;
     if (guard_) counts.smallest_gap = std::min(counts.smallest_gap, state_.contact.smallest_gap);
@@ -99,10 +116,29 @@ class Advance {
   RunState& state_;
   Scratch& scratch_;
   ContactGuard* guard_;
-  bool fast_contact_;
 };
 
 }  // namespace
+
+std::vector<double> driving_accelerations(const Model& model, const Terms& terms,
+                                          std::span<const std::unique_ptr<Potential>> loads,
+                                          ConstVectors positions, const Scratch& scratch) {
+  std::vector<Vec3> force(positions.size(), Vec3::Zero());
+  const auto drives = [](EnergyRole role) { return role == EnergyRole::potential || role == EnergyRole::work; };
+  for (const PotentialTerm& term : terms.potentials)
+    if (drives(term.role)) term.potential->add_gradient(positions, force);
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    if (loads[i] && drives(terms.loads[i].role)) loads[i]->add_gradient(positions, force);
+  std::vector<double> mass(scratch.parts.count(), 0.0), square = mass;
+  for (std::size_t v = 0; v < force.size(); ++v) {
+    const auto part = static_cast<std::size_t>(scratch.parts.of_vertex[v]);
+    if (!(model.masses[v] > 0)) continue;
+    mass[part] += model.masses[v];
+    square[part] += force[v].squaredNorm() / model.masses[v];
+  }
+  for (std::size_t p = 0; p < mass.size(); ++p) square[p] = mass[p] > 0 ? std::sqrt(square[p] / mass[p]) : 0;
+  return square;
+}
 
 int vertex_out_of_range(ConstVectors x) {
   for (std::size_t v = 0; v < x.size(); ++v)
@@ -110,9 +146,13 @@ int vertex_out_of_range(ConstVectors x) {
   return -1;
 }
 
-void Scratch::forget() {
+void Scratch::forget_guard() {
   if (guard_) add(guard_->counts(), earlier_);
   guard_.reset();
+}
+
+void Scratch::forget() {
+  forget_guard();
   stepper = Stepper();
   fixed = {};
   targets = {};
@@ -128,6 +168,7 @@ ContactGuard* Scratch::guard(const Model& model, RunState& state) {
 void Scratch::prepare(const Model& model) {
   const std::size_t count = model.vertex_count();
   if (masses.size() == count) return;
+  parts = find_parts(model);
   fixed.assign(count, 0);
   targets.assign(count, Vec3::Zero());
   // Vertices that move as they are told have no mass, but solvers divide by masses before they leave it out.

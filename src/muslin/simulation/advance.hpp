@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "muslin/contact/contact_guard.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/simulation/diagnostics.hpp"
+#include "muslin/simulation/model_parts.hpp"
 #include "muslin/simulation/run_state.hpp"
 #include "muslin/solver/solver.hpp"
 
@@ -29,6 +31,8 @@ int vertex_out_of_range(ConstVectors x);
 class Scratch {
  public:
   void forget();
+  /// Drops the guard alone.
+  void forget_guard();
   /// The guard over state.contact; null if nothing can touch. Errors: those of ContactGuard.
   ContactGuard* guard(const Model& model, RunState& state);
   /// Brings the vectors to the model's size.
@@ -39,6 +43,7 @@ class Scratch {
   std::vector<std::uint8_t> fixed;  ///< #V
   std::vector<Vec3> targets;        ///< #V by 3
   std::vector<double> masses;       ///< #V, as the solver wants them: none is 0 [kg]
+  ModelParts parts;
   double linearize_seconds = 0, solve_seconds = 0;
 
  private:
@@ -50,5 +55,11 @@ class Scratch {
 /// halved; if it was not made in the end, the report says why and `state` is what it was. So it is after an
 /// exception, of a load for example. Frames are left to the caller.
 StepReport advance(const Model& model, const Terms& terms, RunState& state, double length, Scratch& scratch);
+
+/// By part, the root mean square of the accelerations that fields and loads from outside cause in the step
+/// that `context` begins [m/s²]. `loads`: what the loads amount to in it.
+std::vector<double> driving_accelerations(const Model& model, const Terms& terms,
+                                          std::span<const std::unique_ptr<Potential>> loads,
+                                          ConstVectors positions, const Scratch& scratch);
 
 }  // namespace muslin

@@ -24,7 +24,7 @@ struct CheckpointHeader {
   std::uint64_t fingerprint = 0;     ///< of the model it belongs to
   std::int64_t frame = 0;            ///< the last finished frame
   std::int64_t steps = 0;            ///< steps done since then
-  std::int64_t steps_per_frame = 0;  ///< of the run that wrote it
+  std::int64_t steps_per_frame = 0;  ///< of the run that wrote it, 0 if it chose its steps
 };
 
 /// Throws Error(input) if the bytes are no checkpoint, of another version, cut off or damaged.

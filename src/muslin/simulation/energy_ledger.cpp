@@ -43,8 +43,8 @@ void EnergyLedger::measure(const Terms& acting, const StepContext& context, Cons
 }
 
 void EnergyLedger::enter(const Terms& acting, SolvedStep step,
-                         std::span<const std::unique_ptr<Potential>> loads, const ContactPotential* contact,
-                         bool by_values) {
+                         std::span<const std::unique_ptr<Potential>> loads,
+                         const ContactPotential* contact) {
   const std::vector<Vec3>&before = step.before->positions, &after = step.after->positions;
   std::vector<ActingPotential> acts;
   std::size_t slot = 0;
@@ -52,7 +52,6 @@ void EnergyLedger::enter(const Terms& acting, SolvedStep step,
     ActingPotential act{term.role, term.potential.get()};
     if (is_stored(term.role)) {
       const double now = term.potential->value(after);
-      if (by_values) act.gain = now - stored[slot];
       stored[slot] = now;
     }
     acts.push_back(act);

@@ -57,10 +57,9 @@ struct EnergyLedger {
   void measure(const Terms& acting, const StepContext& context, ConstVectors positions);
 
   /// Enters a step; `step.acts` are filled in here. `loads`: what the loads amounted to in it. `contact`:
-  /// what pressed surfaces apart, null if nothing can touch. by_values: gains of what is stored are
-  /// differences of its values, and no check of the balance.
+  /// what pressed surfaces apart, null if nothing can touch.
   void enter(const Terms& acting, SolvedStep step, std::span<const std::unique_ptr<Potential>> loads,
-             const ContactPotential* contact, bool by_values);
+             const ContactPotential* contact);
 
   /// Goes on with other terms than the ledger was kept for, from `positions`: the energy of terms with the
   /// same name stays, what has changed between counts as work.

@@ -12,7 +12,8 @@ namespace muslin {
 std::vector<std::uint8_t> Simulation::checkpoint() const {
   const RunState& state = impl_->state;
   return to_checkpoint(
-      {model_fingerprint(*impl_->model), state.frame, state.steps_done, impl_->time().steps_per_frame},
+      {model_fingerprint(*impl_->model), state.frame, state.steps_done,
+       impl_->time().steps_per_frame.value_or(0)},
       state);
 }
 
@@ -25,10 +26,12 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
                 "the checkpoint belongs to other bodies: a mesh, a lattice or a material changed",
                 "undo the change, or start the run anew");
   }
-  if (header.steps != 0 && header.steps_per_frame != impl.time().steps_per_frame) {
+  const std::int64_t steps = impl.time().steps_per_frame.value_or(0);
+  if (header.steps != 0 && header.steps_per_frame != steps) {
+    const auto number = [](std::int64_t n) { return n == 0 ? std::string("\"auto\"") : fmt::format("{}", n); };
     throw Error(ErrorKind::input,
-                fmt::format("the checkpoint lies inside a frame of {} steps, the scene now has {}",
-                            header.steps_per_frame, impl.time().steps_per_frame),
+                fmt::format("the checkpoint lies inside a frame with steps_per_frame = {}, the scene now has {}",
+                            number(header.steps_per_frame), number(steps)),
                 "resume from the checkpoint before it");
   }
   RunState state = from_checkpoint(bytes, model.vertex_count());

@@ -15,6 +15,7 @@
 #include "muslin/simulation/checkpoint.hpp"
 #include "muslin/simulation/diagnostics.hpp"
 #include "muslin/simulation/energy_ledger.hpp"
+#include "muslin/simulation/step_control.hpp"
 
 namespace muslin {
 
@@ -40,6 +41,7 @@ struct RunState {
   Holds holds;
   ContactMemory contact;  ///< empty if nothing can touch
   EnergyLedger energy;
+  StepControl control;
   FrameCounts counts;
   Diagnostics diagnostics;  ///< of the last finished frame
 
@@ -52,6 +54,7 @@ struct RunState {
     Holds::name_arrays(self.holds, arrays);
     ContactMemory::name_arrays(self.contact, arrays);
     EnergyLedger::name_arrays(self.energy, arrays);
+    StepControl::name_arrays(self.control, arrays);
     FrameCounts::name_arrays(self.counts, arrays);
     Diagnostics::name_arrays(self.diagnostics, arrays);
   }

@@ -31,10 +31,33 @@ Simulation::Impl::Impl(std::shared_ptr<const Model> the_model, const SimulationO
   finish_frame();
 }
 
-double Simulation::Impl::time_of(int at_frame, int steps) const {
+double Simulation::Impl::progress() const {
+  return time().steps_per_frame
+             ? static_cast<double>(state.steps_done) / *time().steps_per_frame
+             : static_cast<double>(state.control.ticks) / static_cast<double>(StepControl::frame);
+}
+
+double Simulation::Impl::time_now() const {
   // One division of whole numbers, so that second 1 is exactly 1 however many steps lead there.
-  return (static_cast<double>(at_frame) * time().steps_per_frame + steps) /
-         (time().frame_rate * time().steps_per_frame);
+  const double parts = time().steps_per_frame ? *time().steps_per_frame : static_cast<double>(StepControl::frame);
+  const double done = time().steps_per_frame ? state.steps_done : static_cast<double>(state.control.ticks);
+  return (static_cast<double>(state.frame) * parts + done) / (time().frame_rate * parts);
+}
+
+double Simulation::Impl::step_length(int level) const {
+  return time().steps_per_frame ? time().step()
+                                : static_cast<double>(StepControl::length(level)) /
+                                      (static_cast<double>(StepControl::frame) * time().frame_rate);
+}
+
+int Simulation::Impl::choose_level() {
+  if (time().steps_per_frame) return 0;
+  scratch.prepare(*model);
+  const StepContext context = step_context(model->scene.solver.integrator, state.motion, 1 / time().frame_rate);
+  const std::vector<double> accelerations = driving_accelerations(
+      *model, terms(), terms().potentials_of_loads(context), state.motion.positions, scratch);
+  return state.control.choose(scratch.parts, accelerations, scratch.masses, state.motion,
+                              1 / time().frame_rate, model->scene.solver.effort);
 }
 
 void Simulation::Impl::require_untangled(const std::vector<Vec3>& positions) const {
@@ -62,14 +85,20 @@ void Simulation::Impl::measure_energy() {
 void Simulation::Impl::advance() {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
-  const StepReport report = muslin::advance(*model, terms(), state, time().step(), scratch);
+  const int level = choose_level();
+  const StepReport report = muslin::advance(*model, terms(), state, step_length(level), scratch);
   if (!report.made()) fail(report);
   ++state.steps_done;
-  state.motion.time = time_of(state.frame, state.steps_done);
+  if (!time().steps_per_frame) {
+    state.control.note(level, report);
+    state.control.ticks += StepControl::length(level);
+  }
+  state.motion.time = time_now();
   wall_ms += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-  if (state.steps_done < time().steps_per_frame) return;
+  if (progress() < 1) return;
   ++state.frame;
   state.steps_done = 0;
+  state.control.ticks = 0;
   finish_frame();
 }
 
@@ -96,6 +125,11 @@ void Simulation::Impl::finish_frame() {
   row.residual = counts.residual;
   row.min_distance = counts.smallest_gap;
   row.held_back = counts.held_back;
+  row.steps = counts.steps;
+  row.converged_steps = counts.converged_steps;
+  row.error = counts.error;
+  row.crossings = static_cast<int>(state.contact.tangled.size());
+  row.penetration = std::max(0.0, -counts.smallest_gap);
   row.wall_ms = std::exchange(wall_ms, 0.0);
   state.diagnostics = row;
 }
@@ -117,7 +151,10 @@ void Simulation::Impl::fail(const StepReport& report) const {
               fmt::format("the solver could not go on in frame {} after {:.6g} s, even with steps halved {} "
                           "times{}: {}",
                           state.frame + 1, state.motion.time, max_halvings, place, report.failure),
-              fmt::format("raise time.steps_per_frame (now {}){}", time().steps_per_frame,
+              fmt::format("{}{}",
+                          time().steps_per_frame
+                              ? fmt::format("raise time.steps_per_frame (now {})", *time().steps_per_frame)
+                              : std::string("look at what moves there"),
                           explicit_steps ? ", soften the material, or use solver.integrator = "
                                            "\"implicit_euler\", which has no limit on the step"
                                          : ", soften the material, or look at the pins and forces there"));
@@ -143,7 +180,7 @@ void Simulation::step() { impl_->advance(); }
 void Simulation::advance(const Progress& progress) {
   const int frame = impl_->state.frame;
   while (impl_->state.frame == frame) {
-    progress.at(static_cast<double>(impl_->state.steps_done) / impl_->time().steps_per_frame, "simulation");
+    progress.at(impl_->progress(), "simulation");
     impl_->advance();
   }
 }

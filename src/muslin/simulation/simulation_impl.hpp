@@ -24,6 +24,7 @@ struct Simulation::Impl {
   const TimeSettings& time() const { return model->scene.time; }
   Terms terms() const { return {model->potentials, loads}; }
   void advance();
+  double progress() const;  ///< of the frame in work, 0 … 1
   /// Throws what is wrong with positions at which contact is to begin.
   void require_untangled(const std::vector<Vec3>& positions) const;
   /// Begins contact without a past, at positions where nothing crosses that may not.
@@ -36,7 +37,9 @@ struct Simulation::Impl {
   void keep_prescribed(ConstVectors from, Vectors to) const;
 
  private:
-  double time_of(int at_frame, int steps) const;
+  double time_now() const;
+  double step_length(int level) const;  ///< [s]
+  int choose_level();
   void finish_frame();
   [[noreturn]] void fail(const StepReport& report) const;
 };

@@ -1,0 +1,70 @@
+#include "muslin/simulation/step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace muslin {
+namespace {
+
+/// a dt² as a share of the edge; parts have at least so many edges.
+constexpr double acceleration_share = 0.0175, draft_longer = 4;
+constexpr double least_edges = 50;
+/// Edges that a part goes in a step relative to another.
+constexpr double edges_past = 4;
+/// Iterations from which on a step is hard, and up to which it is easy.
+constexpr int hard = 14, easy = 7;
+constexpr int most_harder = 4;
+
+}  // namespace
+
+int StepControl::choose(const ModelParts& parts, std::span<const double> accelerations,
+                        std::span<const double> masses, const State& state, double frame_time,
+                        Effort effort) const {
+  struct Motion {
+    double mass = 0, square = 0;
+    Vec3 momentum = Vec3::Zero();
+  };
+  std::vector<Motion> motions(parts.count());
+  const bool moving = state.previous_velocities.size() == state.velocities.size() && state.previous_dt > 0;
+  for (std::size_t v = 0; v < state.velocities.size(); ++v) {
+    Motion& motion = motions[static_cast<std::size_t>(parts.of_vertex[v])];
+    motion.mass += masses[v];
+    motion.momentum += masses[v] * state.velocities[v];
+    if (moving)
+      motion.square += masses[v] * (state.velocities[v] - state.previous_velocities[v]).squaredNorm();
+  }
+  Vec3 slowest = Vec3::Constant(1e300), fastest = Vec3::Constant(-1e300);
+  for (const Motion& motion : motions) {
+    slowest = slowest.cwiseMin(motion.momentum / motion.mass);
+    fastest = fastest.cwiseMax(motion.momentum / motion.mass);
+  }
+  const double relative = motions.size() > 1 ? (fastest - slowest).norm() : 0;
+  const double share = acceleration_share * (effort == Effort::draft ? draft_longer : 1);
+  double shortest = frame_time;
+  for (std::size_t p = 0; p < motions.size(); ++p) {
+    const double loads = p < accelerations.size() ? accelerations[p] : 0;
+    const double a = moving ? std::sqrt(motions[p].square / motions[p].mass) / state.previous_dt : loads;
+    const double edge = std::min(parts.edges[p], parts.sizes[p] > 0 ? parts.sizes[p] / least_edges : 1.0);
+    if (a > 0) shortest = std::min(shortest, std::sqrt(share * edge / a));
+    if (relative > 0) shortest = std::min(shortest, edges_past * parts.edges[p] / relative);
+  }
+  int wanted = static_cast<int>(std::ceil(std::log2(frame_time / shortest) - 1e-9));
+  wanted = std::max(wanted, 0) + harder;
+  // Steps grow by no more than two at a time.
+  if (moving) wanted = std::max(wanted, level - 1);
+  wanted = std::min(wanted, deepest);
+  while (ticks % length(wanted) != 0) ++wanted;
+  return wanted;
+}
+
+void StepControl::note(int chosen, const StepReport& report) {
+  level = chosen;
+  if (!report.converged || report.newton_iterations >= hard) {
+    harder = std::min(harder + 1, most_harder);
+  } else if (report.newton_iterations <= easy) {
+    harder = std::max(harder - 1, 0);
+  }
+}
+
+}  // namespace muslin
