@@ -27,7 +27,9 @@ constexpr int most_rounds = 32;
 constexpr double pushed_at_once = 0.125;
 /// Edges taken to be this many contact distances long where nothing bends.
 constexpr double edge_distances = 5;
-/// Of the gap floor: motions that may do without a limit.
+/// Of the model's gap floor: contact has to hold whatever presses.
+constexpr double floor_share = 0.01;
+/// Of that: motions that may do without a limit.
 constexpr double slack_share = 1e-4;
 /// The share of gaps that an iteration keeps. Iterations go far; one that ends with some edges at a
 /// thousandth of the range meets forces there that nothing else comes near, and hardly leaves: what moves
@@ -58,6 +60,7 @@ double mean_edge(const ContactModel& model) {
 
 StepLimits limits_of(const ContactModel& model) {
   StepLimits limits = model.limits;
+  limits.gap_floor *= floor_share;
   limits.kept_share = kept_share;
   return limits;
 }
@@ -258,7 +261,7 @@ const Potential& ContactGuard::potential(ConstVectors q) {
 }
 
 /// Far below what the limiter leaves of every gap.
-double ContactGuard::slack() const { return slack_share * model_->limits.gap_floor; }
+double ContactGuard::slack() const { return slack_share * floor_share * model_->limits.gap_floor; }
 
 void ContactGuard::for_each_contact(const std::function<void(const Contact&)>& visit) const {
   potential_->hessian().for_each_row(visit);

@@ -20,6 +20,8 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double size_share = 1.0 / 500, edge_share = 0.2;  // of d̂
 constexpr double thin = 5e-4, thin_share = 0.1;             // thickness of shells: [m], of the mean edge
 constexpr double stiffness_share = 0.15;
+/// The least stiffness carries the body's weight at half the range by this share of its points.
+constexpr double carrying_share = 0.1, gravity = 9.81;
 constexpr double floor_share = 0.005;       // of the gap floor, in d̂
 
 double lattice_stiffness(const Body& body, const BodySettings& settings) {
@@ -198,6 +200,8 @@ class ContactBuilder {
   void finish_body(const Body& body, const ContactBody& contact) {
     bodies_.push_back(contact);
     names_.push_back(body.name);
+    const auto points = std::count(body_of_point_.begin(), body_of_point_.end(), static_cast<int>(bodies_.size()) - 1);
+    weights_.push_back(gravity * body.statistics.mass / static_cast<double>(std::max<std::ptrdiff_t>(points, 1)));
   }
 
   void add_mesh(const Body& body, const Triangulation& cut, const ContactBody& contact) {
@@ -226,6 +230,10 @@ class ContactBuilder {
     model->rest = std::move(rest_);
     model->names = std::move(names_);
     model->faces = std::move(faces_);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const double carrying = weights_[b] / (carrying_share * 0.5 * model->distance);
+      bodies_[b].stiffness = std::max(bodies_[b].stiffness, carrying);
+    }
     model->surface = std::make_shared<ContactSurface>(std::move(triangles_), std::move(body_of_point_),
                                                       std::move(bodies_), std::move(planes_));
     model->map =
@@ -251,6 +259,7 @@ class ContactBuilder {
   std::vector<SurfaceMap::Entry> entries_;
   std::vector<Vec3> rest_;
   std::vector<ContactBody> bodies_;
+  std::vector<double> weights_;  ///< of bodies, by point [N]
   std::vector<ContactPlane> planes_;
   std::vector<std::uint8_t> prescribed_;
   std::vector<int> groups_;
