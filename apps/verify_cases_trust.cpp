@@ -241,7 +241,7 @@ keyframes = [{ time = 0 }, { time = 0.5, translate = [0, 0, 0.5] }]
 [[collider]]
 name = "wall"
 shape = "box"
-size = [0.8, 0.6, 0.1]
+size = [0.8, 2, 0.1]
 center = [0, 0, 0.15]
 )" + weight);
   Watch watch(simulation);
