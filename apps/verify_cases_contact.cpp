@@ -134,7 +134,8 @@ std::vector<Comparison> no_energy_from_nothing() {
       least = std::min(least, energy());
     }
     numbers.push_back(
-        {fmt::format("energy gained over energy fallen, {}", effort), 0, gain / (first - least), 1e-4, false});
+        {fmt::format("energy gained over energy fallen, {}", effort), 0, gain / (first - least), 1e-4,
+         false});
   }
   return numbers;
 }

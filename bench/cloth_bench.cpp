@@ -152,7 +152,8 @@ void spread(benchmark::State& state, int n) {
 void add(const std::string& name, Settings settings) {
   const std::string& effort = name_of(effort_names(), settings.effort);
   benchmark::RegisterBenchmark(
-      (name + "_" + std::to_string(settings.n) + "/" + effort + "/threads:" + std::to_string(settings.threads))
+      (name + "_" + std::to_string(settings.n) + "/" + effort +
+       "/threads:" + std::to_string(settings.threads))
           .c_str(),
       [settings](benchmark::State& state) { run(state, settings); })
       ->Iterations(1)

@@ -103,7 +103,8 @@ TEST(RunQuality, WarnsOfWhatMissedWasHeldBackOrCrosses) {
   EXPECT_THAT(warnings_of(quality), testing::IsEmpty());
   row.frame = 10, row.converged_steps = 199, row.error = 1e-3;
   quality.add(row);
-  EXPECT_THAT(warnings_of(quality), testing::ElementsAre(HasSubstr("1 of 2000 steps missed their tolerance, in frame 10")));
+  EXPECT_THAT(warnings_of(quality),
+              testing::ElementsAre(HasSubstr("1 of 2000 steps missed their tolerance, in frame 10")));
   row.frame = 11, row.converged_steps = 200, row.error = 0;
   quality.add(row);
   EXPECT_THAT(warnings_of(quality), testing::IsEmpty()) << "few, and not at the end";

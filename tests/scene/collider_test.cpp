@@ -382,7 +382,7 @@ TEST_F(ColliderModel, WrongCollidersAreErrorsThatSayWhatToDo) {
        "}\n",
        "has no mass, so nothing holds or pushes it"},
       {"shape = 'plane'\n[contact]\nmode = 'fast'\n",
-       "scene.toml:8:1: contact.mode is gone: every scene is solved in one way"},
+       "scene.toml:9:1: contact.mode is gone: every scene is solved in one way"},
       {"shape = 'plane'\n[contact]\ndistance = 0\n", "`distance`"},
       {"shape = 'plane'\n[contact]\nfriction = -1\n", "`friction`"},
       {"shape = 'plane'\n[solver]\nintegrator = 'symplectic_euler'\n", "symplectic_euler knows no contact"},

@@ -270,11 +270,17 @@ TEST_F(ModelTest, IsDescribedAsJsonAndText) {
   EXPECT_EQ(json["bodies"][0]["springs"]["body_diagonal"], 60);
   EXPECT_NEAR(json["bodies"][0]["mass"].get<double>(), 600, 1e-9);
   EXPECT_EQ(json["time"]["frames"], 48);
-  EXPECT_EQ(json["time"]["steps"], 480);
+  EXPECT_EQ(json["time"]["steps_per_frame"], "auto");
+  EXPECT_TRUE(json["time"]["steps"].is_null());
   EXPECT_EQ(json["pins"][0]["vertices"], 1);
   const std::string text = describe_text(model);
   EXPECT_THAT(text, HasSubstr("349 edge, 256 face diagonal, 60 body diagonal"));
   EXPECT_THAT(text, HasSubstr("pin p: 1 held vertex"));
+  EXPECT_THAT(text, HasSubstr("2 s in 48 frames, steps as the motion needs them, of at most 0.04167 s, by "
+                              "implicit_euler, effort normal, tolerance 0.01"));
+  const Model fixed = build(body("box.obj", "[time]\nsteps_per_frame = 10\n"));
+  EXPECT_EQ(nlohmann::json::parse(describe_json(fixed))["time"]["steps"], 480);
+  EXPECT_THAT(describe_text(fixed), HasSubstr("2 s in 48 frames, 480 steps of 0.004167 s by implicit_euler"));
   EXPECT_THAT(describe_text(model.bodies[0].report, "box.obj"), HasSubstr("closed, volume 60 m³"));
   EXPECT_EQ(nlohmann::json::parse(describe_json(model.bodies[0].report, "box.obj"))["faces"], 6);
 }

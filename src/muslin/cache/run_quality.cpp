@@ -15,8 +15,8 @@ bool ends_in(const std::vector<int>& frames, int last) { return !frames.empty() 
 
 std::string missed_text(const RunQuality& quality) {
   return fmt::format(
-      "{} of {} steps missed their tolerance, in {}; the largest estimate of their error is {:.2g} m; raise "
-      "time.steps_per_frame, or look at what happens there",
+      "{} of {} steps missed their tolerance, in {}; the largest estimate of their error is {:.2g} m; look "
+      "at what happens there, or give more steps by time.steps_per_frame",
       quality.steps - quality.converged_steps, quality.steps, describe_frames(quality.frames_missed),
       quality.worst_error);
 }
@@ -26,13 +26,14 @@ std::string held_back_text(const RunQuality& quality) {
       "pins or colliders that move could not follow their keyframes in {}: something held back up to {} of "
       "their vertices; {}",
       describe_frames(quality.frames_held_back), quality.most_held_back,
-      ends_in(quality.frames_held_back, quality.last_frame) ? "they still are behind" : "they have caught up");
+      ends_in(quality.frames_held_back, quality.last_frame) ? "they still are behind"
+                                                            : "they have caught up");
 }
 
 std::string crossings_text(const RunQuality& quality) {
+  const int pairs = quality.crossings_at_end;
   return fmt::format("{} of triangles still {} at the end; more frames may part them",
-                     quality.crossings_at_end == 1 ? "1 pair" : fmt::format("{} pairs", quality.crossings_at_end),
-                     quality.crossings_at_end == 1 ? "crosses" : "cross");
+                     pairs == 1 ? "1 pair" : fmt::format("{} pairs", pairs), pairs == 1 ? "crosses" : "cross");
 }
 
 }  // namespace

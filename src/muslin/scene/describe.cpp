@@ -189,7 +189,8 @@ std::string collider_text(const Model& model, std::size_t index) {
 std::string steps_text(const TimeSettings& time) {
   if (!time.steps_per_frame)
     return fmt::format("steps as the motion needs them, of at most {:.4g} s,", time.step());
-  return fmt::format("{} steps of {:.4g} s", std::int64_t{time.frames()} * *time.steps_per_frame, time.step());
+  const std::int64_t steps = std::int64_t{time.frames()} * *time.steps_per_frame;
+  return fmt::format("{} steps of {:.4g} s", steps, time.step());
 }
 
 std::string solver_text(const SolverSettings& solver) {

@@ -41,7 +41,7 @@ struct SolverSettings {
 
   double error_tolerance() const {
     if (tolerance) return *tolerance;
-    return effort == Effort::draft ? 0.1 : effort == Effort::normal ? 0.01 : 1e-4;
+    return effort == Effort::draft ? 0.3 : effort == Effort::normal ? 0.1 : 1e-3;
   }
 };
 
