@@ -14,7 +14,7 @@ constexpr double least_edges = 50;
 constexpr double edges_past = 4;
 /// Iterations from which on a step is hard, and up to which it is easy.
 constexpr int hard = 14, easy = 7;
-constexpr int most_harder = 4;
+constexpr int most_harder = 2;
 
 }  // namespace
 

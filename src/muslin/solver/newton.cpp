@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -21,7 +20,8 @@ constexpr double slope_share = 0.9;  // approximate Wolfe: the slope must have r
 constexpr double rounding = 1e-12;   // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-8;
 constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-4;
-constexpr int max_iterations = 60;
+/// A step that has not converged by then is tried in halves, or taken and said not to have.
+constexpr int max_iterations = 30, max_exact_iterations = 100;
 
 class Newton {
  public:
@@ -42,6 +42,7 @@ class Newton {
         count_(x.size()),
         scale_(function.dt() * function.dt()),
         error_(problem, function, settings.error_tolerance()),
+        max_iterations_(settings.effort == Effort::exact ? max_exact_iterations : max_iterations),
         with_contact_(problem) {
     for (auto* vectors : {&there_, &g_, &s_, &d_, &workspace.base, &workspace.z}) vectors->resize(count_);
     with_contact_.potentials.push_back(nullptr);
@@ -58,12 +59,11 @@ class Newton {
     report_.residual = imbalance_.largest;
     report_.worst_vertex = imbalance_.vertex;
     report_.held_back = held_back_;
-    if (report_.made()) correct_rigid_motions(problem_, function_, guard_, g_, state_.positions, x_);
+    if (report_.made()) correct_rigid_motions(problem_, function_, guard_, g_, x_);
     return report_;
   }
 
  private:
-  const StepGuard* guard() const { return guard_; }
   IncrementalPotential full() const {
     return guard_ ? IncrementalPotential(with_contact_, function_.prediction(), function_.dt()) : function_;
   }
@@ -141,7 +141,7 @@ class Newton {
       return false;
     }
     if (report_.newton_iterations == 0 && held_back_ == 0 && error_.bound(x_, g_)) return done(true);
-    if (report_.newton_iterations == max_iterations) return done(false);
+    if (report_.newton_iterations == max_iterations_) return done(false);
     if (report_.newton_iterations > 0 && held_back_ > 0) push_held();
     {
       const Stopwatch watch(report_.linearize_seconds);
@@ -161,10 +161,6 @@ class Newton {
     const double shrink = imbalance_.norm / norm;
     forcing_ = std::clamp(0.9 * shrink * shrink, tightest_forcing, loosest_forcing);
     forcing_ = std::clamp(std::max(forcing_, error_.wanted_forcing()), tightest_forcing, loosest_forcing);
-    if (std::getenv("MUSLIN_TRACE"))
-      std::fprintf(stderr, "  it %d imb %.2e norm %.2e lin %d err %.2e tol %.2e t %.2g s %.2e cut %.2e held %d C %.2e\n",
-                   report_.newton_iterations, imbalance_.largest, imbalance_.norm, report_.linear_iterations,
-                   error_.largest(), error_.allowed(), length_t_, error_.step(), error_.cut(), held_back_, contact_value_);
     return good ? done(true) : true;
   }
 
@@ -260,6 +256,7 @@ class Newton {
   std::size_t count_;
   double scale_;
   StepError error_;
+  int max_iterations_;
   StepProblem with_contact_;
   StepReport report_;
   IncrementalPotential::Evaluation at_;     ///< at x, without contact

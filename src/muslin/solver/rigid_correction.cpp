@@ -47,8 +47,7 @@ Mat3 rotation_of(const Vec3& angle) {
 }  // namespace
 
 void correct_rigid_motions(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
-                           ConstVectors g, ConstVectors x_begin, Vectors x) {
-  (void)x_begin;
+                           ConstVectors g, Vectors x) {
   const std::size_t count = x.size();
   const auto part_of = [&](std::size_t v) {
     return problem.parts.empty() ? std::size_t{0} : static_cast<std::size_t>(problem.parts[v]);

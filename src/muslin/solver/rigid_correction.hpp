@@ -18,6 +18,6 @@ namespace muslin {
 /// Moves every group of parts that is not held by the rigid motion that its momenta lack; along what it
 /// touches that does not move, and about that, it stays. g is the gradient at x.
 void correct_rigid_motions(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
-                           ConstVectors g, ConstVectors from, Vectors x);
+                           ConstVectors g, Vectors x);
 
 }  // namespace muslin

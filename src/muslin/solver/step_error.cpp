@@ -98,9 +98,6 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
     if (error >= worst_ratio_ * part.allowed) {
       worst_ratio_ = error / part.allowed;
       largest_ = error;
-      allowed_ = part.allowed;
-      step_ = std::sqrt(sum.largest_step);
-      cut_ = std::sqrt(sum.largest_cut);
     }
   }
   return good;

@@ -34,9 +34,6 @@ class StepError {
   void give_up(ConstVectors s);
 
   double largest() const { return largest_; }  ///< estimate in the worst part [m]
-  double allowed() const { return allowed_; }  ///< there [m]
-  double step() const { return step_; }
-  double cut() const { return cut_; }
   /// The relative residual with which the next linear system makes the error small enough.
   double wanted_forcing() const;
 
@@ -55,7 +52,7 @@ class StepError {
   const IncrementalPotential& function_;
   double tolerance_;
   std::vector<Part> parts_;
-  double largest_ = 0, allowed_ = 0, step_ = 0, cut_ = 0;
+  double largest_ = 0;
   double worst_ratio_ = 1;  ///< of estimate and allowed
 };
 
