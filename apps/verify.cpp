@@ -1,6 +1,9 @@
 // muslin verify [TEST]
 #include <chrono>
+#include <limits>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "verify_case.hpp"
@@ -15,16 +18,20 @@ namespace {
 std::string list() {
   std::string text;
   for (const VerifyCase& c : verify_cases())
-    text += fmt::format("{:<20} {}{}\n", c.name, c.claim, c.slow ? " (slow)" : "");
+    text += fmt::format("{:<26} {}{}\n", c.name, c.claim, c.slow ? " (slow)" : "");
   return text;
 }
 
-const VerifyCase& find_case(const std::string& name) {
+/// The case of this name, or all cases whose names begin with it and a hyphen.
+std::vector<VerifyCase> find_cases(const std::string& name) {
   std::vector<std::string> names;
+  std::vector<VerifyCase> group;
   for (const VerifyCase& c : verify_cases()) {
-    if (c.name == name) return c;
+    if (c.name == name) return {c};
+    if (c.name.starts_with(name + "-")) group.push_back(c);
     names.push_back(c.name);
   }
+  if (!group.empty()) return group;
   throw Error(ErrorKind::usage, fmt::format("there is no test `{}`", name),
               name_advice(name, names) + " (muslin verify --list)");
 }
@@ -33,20 +40,30 @@ std::string row(const VerifyCase& c, const Comparison& number) {
   const std::string unit = number.relative ? " %" : "";
   const double scale = number.relative ? 100 : 1;
   return fmt::format(
-      "{:<20} {:<44} {:>12.7g} {:>12.7g} {:>10} {:>10}  {}  {}\n", c.name, number.quantity, number.reference,
+      "{:<26} {:<44} {:>12.7g} {:>12.7g} {:>10} {:>10}  {}  {}\n", c.name, number.quantity, number.reference,
       number.measured, fmt::format("{:.2g}{}", scale * number.deviation(), unit),
       fmt::format("{:.2g}{}", scale * number.tolerance, unit), number.passed() ? "pass" : "FAIL", c.source);
 }
 
+/// What the case finds; a run that the solver gives up says so in a row and counts as one that is off.
+std::vector<Comparison> find(const VerifyCase& c) {
+  try {
+    return c.run();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::solver) throw;
+    return {{error.what(), 0, std::numeric_limits<double>::quiet_NaN(), 0, false}};
+  }
+}
+
 /// The number of comparisons that failed.
 int verify(const std::vector<VerifyCase>& cases) {
-  print(fmt::format("{:<20} {:<44} {:>12} {:>12} {:>10} {:>10}  {}  {}\n", "test", "quantity", "reference",
+  print(fmt::format("{:<26} {:<44} {:>12} {:>12} {:>10} {:>10}  {}  {}\n", "test", "quantity", "reference",
                     "measured", "deviation", "tolerance", "    ", "source"));
   const auto begin = std::chrono::steady_clock::now();
   int count = 0, failed = 0;
   for (const VerifyCase& c : cases) {
     if (interrupted()) throw Error(ErrorKind::interrupted, "stopped", "run it again");
-    for (const Comparison& number : c.run()) {
+    for (const Comparison& number : find(c)) {
       print(row(c, number));
       ++count;
       failed += number.passed() ? 0 : 1;
@@ -66,12 +83,12 @@ void add_verify(CLI::App& program) {
   };
   auto* command = program.add_subcommand("verify", "run physics against closed forms and published numbers");
   auto a = std::make_shared<Arguments>();
-  command->add_option("TEST", a->test, "one test (default: all)");
+  command->add_option("TEST", a->test, "one test, or the first word of several (default: all)");
   command->add_flag("--list", a->list, "what there is");
   command->callback([a] {
     if (a->list) return print(list());
     listen_for_interrupts();
-    const int failed = verify(a->test.empty() ? verify_cases() : std::vector{find_case(a->test)});
+    const int failed = verify(a->test.empty() ? verify_cases() : find_cases(a->test));
     if (failed > 0)
       throw Error(ErrorKind::solver, fmt::format("{} of the numbers are off", failed),
                   "see the lines with FAIL");

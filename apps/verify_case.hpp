@@ -40,5 +40,7 @@ std::vector<VerifyCase> resolution_cases();
 std::vector<VerifyCase> friction_cases();
 std::vector<VerifyCase> contact_cases();
 std::vector<VerifyCase> promise_cases();
+std::vector<VerifyCase> trust_cases();
+std::vector<VerifyCase> trust_motion_cases();  ///< a part of trust_cases()
 
 }  // namespace muslin::app

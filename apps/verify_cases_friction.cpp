@@ -67,27 +67,6 @@ material = "denim"
 translate = [0, 0.0015, 0]
 )";
 
-const Body& find_body(const Simulation& simulation, const std::string& name) {
-  const auto& bodies = simulation.model().bodies;
-  const auto at = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
-  if (at == bodies.end()) throw Error(ErrorKind::usage, "no body " + name, "mend the case");
-  return *at;
-}
-
-/// Of the vertices, by mass.
-Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity = false) {
-  const Body& body = find_body(simulation, name);
-  const auto& of = velocity ? simulation.state().velocities : simulation.state().positions;
-  Vec3 sum = Vec3::Zero();
-  double mass = 0;
-  for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v) {
-    const auto i = static_cast<std::size_t>(v);
-    sum += simulation.model().masses[i] * of[i];
-    mass += simulation.model().masses[i];
-  }
-  return sum / mass;
-}
-
 Simulation start_on_slope(const Experiment& experiment, const std::string& body, double degrees,
                           double friction, int frame_rate, const std::vector<std::string>& overrides = {}) {
   experiment.box("block.obj", {0.1, 0.05, 0.1});

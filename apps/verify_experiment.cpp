@@ -1,8 +1,12 @@
 #include "verify_experiment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 #include <fstream>
+#include <map>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -54,6 +58,61 @@ void Experiment::level_sheet(const std::string& file, double x, double z, int ce
   write(file, obj);
 }
 
+void Experiment::ball(const std::string& file, double radius, int segments, int rings) const {
+  std::string obj = fmt::format("v 0 {:.17g} 0\n", radius);
+  for (int ring = 1; ring < rings; ++ring) {
+    const double from_pole = std::numbers::pi * ring / rings;
+    for (int i = 0; i < segments; ++i) {
+      const double around = 2 * std::numbers::pi * i / segments;
+      obj += fmt::format("v {:.17g} {:.17g} {:.17g}\n", radius * std::sin(from_pole) * std::cos(around),
+                         radius * std::cos(from_pole), radius * std::sin(from_pole) * std::sin(around));
+    }
+  }
+  obj += fmt::format("v 0 {:.17g} 0\n", -radius);
+  const int last_ring = 2 + (rings - 2) * segments, south_pole = last_ring + segments;
+  for (int i = 0; i < segments; ++i) {
+    const int next = (i + 1) % segments;
+    obj += fmt::format("f 1 {} {}\n", 2 + next, 2 + i);
+    for (int first = 2; first < last_ring; first += segments)
+      obj += fmt::format("f {} {} {} {}\n", first + i, first + next, first + segments + next,
+                         first + segments + i);
+    obj += fmt::format("f {} {} {}\n", south_pole, last_ring + i, last_ring + next);
+  }
+  write(file, obj);
+}
+
+void Experiment::cube(const std::string& file, double side, int cells) const {
+  std::string vertices, faces;
+  std::map<std::array<int, 3>, int> numbers;
+  const auto number = [&](const std::array<int, 3>& p) {
+    const auto [at, fresh] = numbers.emplace(p, static_cast<int>(numbers.size()) + 1);
+    if (fresh) {
+      const auto along = [&](int i) { return (static_cast<double>(i) / cells - 0.5) * side; };
+      vertices += fmt::format("v {:.17g} {:.17g} {:.17g}\n", along(p[0]), along(p[1]), along(p[2]));
+    }
+    return at->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool far : {false, true}) {
+      for (int i = 0; i < cells; ++i) {
+        for (int k = 0; k < cells; ++k) {
+          const auto corner = [&](int di, int dk) {
+            std::array<int, 3> p{};
+            p[axis] = far ? cells : 0;
+            p[(axis + 1) % 3] = i + di;
+            p[(axis + 2) % 3] = k + dk;
+            return number(p);
+          };
+          const int a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+          faces +=
+              far ? fmt::format("f {} {} {} {}\n", a, b, c, d) : fmt::format("f {} {} {} {}\n", d, c, b, a);
+        }
+      }
+    }
+  }
+  write(file, vertices + faces);
+}
+
 void Experiment::upright_sheet(const std::string& file, double x, double y) const {
   write(file,
         fmt::format("v 0 0 0\nv {0:.17g} 0 0\nv {0:.17g} {1:.17g} 0\nv 0 {1:.17g} 0\nf 1 2 3 4\n", x, y));
@@ -66,6 +125,30 @@ Simulation Experiment::start(const std::string& scene, const std::vector<std::st
 
 void advance(Simulation& simulation, int frames) {
   for (int frame = 0; frame < frames; ++frame) simulation.advance();
+}
+
+namespace {
+
+const Body& find_body(const Simulation& simulation, const std::string& name) {
+  const auto& bodies = simulation.model().bodies;
+  const auto at = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
+  if (at == bodies.end()) throw Error(ErrorKind::usage, "no body " + name, "mend the case");
+  return *at;
+}
+
+}  // namespace
+
+Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity) {
+  const Body& body = find_body(simulation, name);
+  const auto& of = velocity ? simulation.state().velocities : simulation.state().positions;
+  Vec3 sum = Vec3::Zero();
+  double mass = 0;
+  for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    sum += simulation.model().masses[i] * of[i];
+    mass += simulation.model().masses[i];
+  }
+  return sum / mass;
 }
 
 std::size_t vertex(const Simulation& simulation, int i, int j, int k) {

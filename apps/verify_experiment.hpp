@@ -27,6 +27,10 @@ class Experiment {
   }
   /// The same of `cells_x` by `cells_z` squares; vertex i + k (cells_x + 1).
   void level_sheet(const std::string& file, double x, double z, int cells_x, int cells_z) const;
+  /// Writes a ball about the origin [m]: `rings` rows of polygons from pole to pole, `segments` in each.
+  void ball(const std::string& file, double radius, int segments, int rings) const;
+  /// Writes a closed cube about the origin, every side of `cells` by `cells` squares [m].
+  void cube(const std::string& file, double side, int cells) const;
   /// Writes an upright sheet x by y in the plane z = 0 [m].
   void upright_sheet(const std::string& file, double x, double y) const;
 
@@ -39,6 +43,9 @@ class Experiment {
 };
 
 void advance(Simulation& simulation, int frames);
+
+/// Centre of mass of the body or collider of this name [m], or how fast it moves [m/s].
+Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity = false);
 
 /// Index of vertex (i, j, k) of the only body's lattice.
 std::size_t vertex(const Simulation& simulation, int i, int j, int k);

@@ -146,6 +146,16 @@ TEST(CommandLine, CheckReportsOnABareMesh) {
   EXPECT_THAT(run(scratch, {"check", mesh}).out, HasSubstr("closed, volume 60"));
 }
 
+TEST(CommandLine, VerifyRunsOneTestOrAllThatBeginWithAWord) {
+  Scratch scratch;
+  for (const char* name : {"free-fall", "free"}) {
+    const Outcome outcome = run(scratch, {"verify", name});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("1 of 1 pass"));
+  }
+  expect_refusal(run(scratch, {"verify", "fre"}), 2, "there is no test `fre`");
+}
+
 TEST(CommandLine, OverridesReachTheSceneAndFaultsInThemAreTold) {
   Scratch scratch;
   const Outcome good = run(scratch, {"check", "--json", two_corners, "--set", "time.duration=1", "--set",
