@@ -61,7 +61,7 @@ TEST_P(FarWays, NeverMakeCrumpledClothCross) {
   ContactGuard guard(scene.model, memory);
   std::vector<std::uint8_t> held(scene.q.size(), 0);
   std::fill(held.begin() + static_cast<std::ptrdiff_t>(scene.cloth_size), held.end(), 1);
-  const double edge = guard.resolution();
+  const double edge = 1.0 / 21;
   std::normal_distribution<double> noise(0, 1);
   std::uniform_real_distribution<double> any(0, 1);
   double moved = 0;

@@ -98,7 +98,7 @@ class VertexTerms {
     }
     const ContactPair& first = all[static_cast<std::size_t>(pairs[0])];
     const int v = first.points[0];
-    if (is_lone_point(v)) add_corners(v, first);
+    if (is_lone_point(v) && !surface_.is_round(first.points[3])) add_corners(v, first);
     for (const Feature& e : edges_) {
       if (e.triangles == 1) continue;
       const ContactSurface::Edge& ends = surface_.edges()[static_cast<std::size_t>(e.index)];
