@@ -237,8 +237,13 @@ TEST_F(ColliderModel, DensityMakesARigidBody) {
   EXPECT_LT((momentum - mass * Vec3(0, 1, 0)).norm(), 1e-12);
   EXPECT_NEAR(inertia, 0.4 * mass * 0.01, 1e-12);
   EXPECT_LT((spin - 0.4 * mass * 0.01 * std::numbers::pi * Vec3(0, 0, 1)).norm(), 1e-12);
-  ASSERT_EQ(model.potentials.size(), 1u);
-  EXPECT_NEAR(model.potentials[0].potential->value(model.rest_positions), 0, 1e-20);
+  ASSERT_FALSE(model.loads.empty());
+  State start;
+  start.positions = model.rest_positions;
+  start.velocities.assign(start.positions.size(), Vec3::Zero());
+  const StepContext step = step_context(Integrator::implicit_euler, start, 1.0 / 240);
+  const auto rigidity = model.loads[0].load->potential(step);
+  EXPECT_NEAR(rigidity->value(model.rest_positions), 0, 1e-20);
   const ContactBody& contact = model.contact->surface->bodies()[0];
   EXPECT_EQ(contact.radius, 0.1);
   EXPECT_FALSE(contact.fixed);
@@ -315,9 +320,13 @@ TEST_F(ColliderModel, SurfacesAreThoseOfTheBodies) {
   const ContactSurface& surface = *model.contact->surface;
   ASSERT_EQ(surface.bodies().size(), 5u);
   EXPECT_EQ(surface.bodies()[0].radius, 0.002);
-  EXPECT_NEAR(surface.bodies()[0].stiffness, 0.15 * 200, 1e-9);
+  // Heavy and soft, both are carried at half the range by a tenth of their points.
+  const auto carrying = [&](std::size_t b, double points) {
+    return 9.81 * model.bodies[b].statistics.mass / (0.1 * points * 0.5 * model.contact->distance);
+  };
+  EXPECT_NEAR(surface.bodies()[0].stiffness, carrying(0, 4), 1e-6);
   EXPECT_EQ(surface.bodies()[1].radius, 0.05);
-  EXPECT_NEAR(surface.bodies()[1].stiffness, 0.15 * 1000 * 0.1, 1e-9);
+  EXPECT_NEAR(surface.bodies()[1].stiffness, carrying(1, 4), 1e-6);
   EXPECT_EQ(surface.bodies()[2].radius, 0.3);
   EXPECT_TRUE(surface.bodies()[2].fixed);
   EXPECT_EQ(surface.triangles().size(), 24u + 24 + 1 + 12);

@@ -220,6 +220,7 @@ struct Cloth {
   std::pair<int, int> steps(int count, bool coarse, int threads = 0) {
     set_thread_count(threads);
     SolverSettings settings;
+    settings.effort = Effort::exact;
     StepProblem problem{masses, {membrane.get(), bending.get(), gravity.get()}, fixed, rest};
     if (coarse) problem.rest_positions = rest;
     Stepper stepper;

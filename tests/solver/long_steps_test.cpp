@@ -51,7 +51,8 @@ double compressed_edges(const test::Flag& flag) {
 /// One step: in balance, by the report and by an evaluation of its own, and lower than where it started from.
 void expect_a_step(test::Flag& flag, const std::string& where) {
   SolverSettings settings;
-  settings.tolerance = 1e-6;
+  settings.effort = Effort::exact;
+  settings.tolerance = 1e-7;
   const StepProblem problem = flag.problem();
   const State before = flag.state;
   const StepContext context = step_context(settings.integrator, before, dt);

@@ -72,7 +72,7 @@ class TimedForce : public Load {
 
 struct SmallModelOptions {
   Integrator integrator = Integrator::implicit_euler;
-  double tolerance = 1e-9;
+  double tolerance = 1e-12;
   int steps_per_frame = 4;
   double frame_rate = 24;
   bool pinned = true;

@@ -35,6 +35,8 @@ constexpr double slack_share = 1e-4;
 /// thousandth of the range meets forces there that nothing else comes near, and hardly leaves: what moves
 /// along at such gaps is stopped.
 constexpr double kept_share = 0.1;
+/// In which contact stops the mass of a rigid body [s]; whatever the steps, so that their changes do no work.
+constexpr double stopping_time = 1.0 / 240;
 /// Friction is full at this speed [m/s].
 constexpr double stick_speed = 1e-3;
 
@@ -89,7 +91,7 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
       edge_(mean_edge(*model_)),
       longest_(std::max(edges_at_once * edge_, 4 * model_->distance)),
       longest_push_(pushed_at_once * longest_),
-      friction_{model_->friction, stick_speed, 1},
+      friction_{model_->friction, stick_speed, stopping_time},
       x_(model_->map->point_count()),
       to_(model_->map->point_count()) {
   for (const ContactBody& body : model_->surface->bodies()) {
@@ -106,7 +108,6 @@ void ContactGuard::begin(ConstVectors q, double length, std::span<const std::uin
   forget_renewed();
   start_.assign(q.begin(), q.end());
   friction_.stick_length = stick_speed * length;
-  friction_.dt = length;
   held_.assign(held.begin(), held.end());
   const std::vector<std::uint8_t>& prescribed = model_->limits.prescribed;
   for (std::size_t v = 0; v < prescribed.size(); ++v) held_[v] |= prescribed[v];

@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t grain = 1024;
 constexpr double rounding = 1e-9;
 /// A round body meets the insides of faces and edges within this share of the range, and not at all where
-/// they come nearer to it than their corners by less than the second share: then these are enough.
-constexpr double round_range = 0.5, round_sagitta = 0.25;
+/// they come nearer to it than their corners by less than the second share: then these are enough. One that
+/// is smaller than faces, which come nearer by more than `round_most` ranges, is met by them as a point is.
+constexpr double round_range = 0.5, round_sagitta = 0.25, round_most = 8;
 /// Edges fade out towards their ends over this share of the range, where the vertex there is in range as
 /// well, but of no more than this share of their length; and below this squared sine of their angle.
 constexpr double end_ranges = 0.5, end_share = 0.05, parallel_share = 1e-3;
@@ -64,6 +65,7 @@ double range_of(const ContactSurface& surface, const ContactPair& pair, ConstVec
       longest = std::max(longest, (x[static_cast<std::size_t>(pair.points[i])] -
                                    x[static_cast<std::size_t>(pair.points[j])]).squaredNorm());
   const double sagitta = longest / (8 * pair.thickness);
+  if (!(sagitta < round_most * pair.range)) return pair.range;
   return sagitta < round_sagitta * pair.range ? 0 : round_range * pair.range;
 }
 
@@ -79,6 +81,7 @@ class VertexTerms {
     edges_.clear();
     corners_.clear();
     const std::span<const ContactPair> all = distances_.candidates().pairs();
+    bool reduced = false;
     for (const int i : pairs) {
       const ContactPair& pair = all[static_cast<std::size_t>(i)];
       const auto t = static_cast<std::size_t>(pair.second);
@@ -91,6 +94,7 @@ class VertexTerms {
         if (edges[k] >= 0 && !edge_again) note(edges_, edges[k], pair);
       }
       const double range = range_of(surface_, pair, distances_.points());
+      reduced |= range < pair.range;
       if (range > 0) {
         out_.push_back({ContactTerm::Kind::vertex_triangle, pair.points, -1, pair.key(), pair.thickness,
                         range, surface_.stiffness(pair.points[0], pair.points[3], dt_)});
@@ -98,7 +102,7 @@ class VertexTerms {
     }
     const ContactPair& first = all[static_cast<std::size_t>(pairs[0])];
     const int v = first.points[0];
-    if (is_lone_point(v) && !surface_.is_round(first.points[3])) add_corners(v, first);
+    if (reduced && is_lone_point(v)) add_corners(v, first);
     for (const Feature& e : edges_) {
       if (e.triangles == 1) continue;
       const ContactSurface::Edge& ends = surface_.edges()[static_cast<std::size_t>(e.index)];

@@ -85,8 +85,22 @@ void Simulation::Impl::measure_energy() {
 void Simulation::Impl::advance() {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
-  const int level = choose_level();
-  const StepReport report = muslin::advance(*model, terms(), state, step_length(level), scratch);
+  int level = choose_level();
+  StepReport report;
+  if (time().steps_per_frame) {
+    report = muslin::advance(*model, terms(), state, step_length(level), scratch);
+  } else {
+    // What begins to move within a step is known at its end only.
+    const RunState before = state;
+    for (;;) {
+      report = muslin::advance(*model, terms(), state, step_length(level), scratch);
+      const int wanted = report.made() ? choose_level() : level;
+      if (wanted <= level + 1 || level == StepControl::deepest) break;
+      state = before;
+      scratch.forget();
+      level = std::min(wanted, StepControl::deepest);
+    }
+  }
   if (!report.made()) fail(report);
   ++state.steps_done;
   if (!time().steps_per_frame) {

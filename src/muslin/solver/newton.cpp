@@ -21,7 +21,7 @@ constexpr double rounding = 1e-12;   // values closer than this (relative) canno
 constexpr double smallest_step = 1e-8;
 constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-4;
 /// A step that has not converged by then is tried in halves, or taken and said not to have.
-constexpr int max_iterations = 30, max_exact_iterations = 100;
+constexpr int max_iterations = 30, max_exact_iterations = 300;
 
 class Newton {
  public:
@@ -44,7 +44,7 @@ class Newton {
         error_(problem, function, settings.error_tolerance()),
         max_iterations_(settings.effort == Effort::exact ? max_exact_iterations : max_iterations),
         with_contact_(problem) {
-    for (auto* vectors : {&there_, &g_, &s_, &d_, &workspace.base, &workspace.z}) vectors->resize(count_);
+    for (auto* vectors : {&there_, &g_, &s_, &d_, &workspace.base}) vectors->resize(count_);
     with_contact_.potentials.push_back(nullptr);
   }
 
@@ -57,14 +57,14 @@ class Newton {
     evaluate();
     // What falls freely is where it belongs from the first step on, not only as far as a loose solve leads.
     if (state_.previous_velocities.empty() && std::isfinite(imbalance_.norm)) {
-      correct_rigid_motions(problem_, function_, guard_, g_, x_);
+      correct_rigid_motions();
       evaluate();
     }
     while (iterate()) continue;
     report_.residual = imbalance_.largest;
     report_.worst_vertex = imbalance_.vertex;
     report_.held_back = held_back_;
-    if (report_.made()) correct_rigid_motions(problem_, function_, guard_, g_, x_);
+    if (report_.made()) correct_rigid_motions();
     return report_;
   }
 
@@ -117,6 +117,14 @@ class Newton {
     return true;
   }
 
+  /// Unless a potential does not let it.
+  void correct_rigid_motions() {
+    std::copy(x_.begin(), x_.end(), there_.begin());
+    muslin::correct_rigid_motions(problem_, function_, guard_, g_, x_);
+    for_each_vertex(count_, [&](std::size_t v) { d_[v] = x_[v] - there_[v]; });
+    if (!(function_.max_step(there_, d_) > 1)) std::copy(there_.begin(), there_.end(), x_.begin());
+  }
+
   /// Everything at x_, contact lagged there.
   void evaluate() {
     at_ = function_.evaluate(x_, workspace_.base);
@@ -141,7 +149,7 @@ class Newton {
 
   /// One iteration; false when the step has ended.
   bool iterate() {
-    if (!std::isfinite(imbalance_.norm)) {
+    if (!std::isfinite(imbalance_.norm) || !std::isfinite(at_.value.value)) {
       report_.failure = "forces are not finite numbers";
       return false;
     }
@@ -154,15 +162,15 @@ class Newton {
     }
     if (imbalance_.largest <= function_.rounding_floor(x_, inner_.stiffest())) return done(true);
     ++report_.newton_iterations;
-    inner_.precondition(g_, workspace_.z);
-    error_.begin(g_, workspace_.z);
+    inner_.precondition(g_, there_);
+    error_.begin(g_, there_);
     const double norm = imbalance_.norm;
     if (!move() && !(inner_.project() && move())) {
       error_.give_up(s_);
       return done(false);
     }
-    inner_.precondition(g_, workspace_.z);
-    const bool good = error_.end(x_, state_.positions, g_, workspace_.z, s_, d_, length_t_);
+    inner_.precondition(g_, there_);
+    const bool good = error_.end(x_, state_.positions, g_, there_, s_, d_, length_t_);
     const double shrink = imbalance_.norm / norm;
     forcing_ = std::clamp(0.9 * shrink * shrink, tightest_forcing, loosest_forcing);
     forcing_ = std::clamp(std::max(forcing_, error_.wanted_forcing()), tightest_forcing, loosest_forcing);
@@ -289,7 +297,7 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
 
 std::size_t NewtonWorkspace::bytes() const {
   std::size_t vectors = 0;
-  for (const auto* v : {&x, &g, &s, &base, &d, &z, &end}) vectors += v->capacity();
+  for (const auto* v : {&x, &g, &s, &base, &d, &end}) vectors += v->capacity();
   return vectors * sizeof(Vec3) + inner.bytes();
 }
 

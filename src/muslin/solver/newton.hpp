@@ -11,10 +11,10 @@ namespace muslin {
 
 /// Vectors kept from step to step.
 struct NewtonWorkspace {
-  std::vector<Vec3> x;     ///< what the line search tries
+  std::vector<Vec3> x;     ///< what the line search tries; between searches the preconditioned gradient
   std::vector<Vec3> g, s;  ///< gradient and step
   std::vector<Vec3> base;  ///< the gradient without contact
-  std::vector<Vec3> d, z;  ///< what of the step is left, and the preconditioned gradient
+  std::vector<Vec3> d;     ///< what of the step is left
   std::vector<Vec3> end;   ///< room for the result
   InnerSolver inner;
 

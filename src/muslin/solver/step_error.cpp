@@ -9,7 +9,7 @@ namespace {
 /// Error of one vertex over that of its part.
 constexpr double local_share = 0.1;
 /// The share of an edge that is always good enough.
-constexpr double smallest = 1e-10;
+constexpr double smallest = 1e-14;
 /// Work of the residual, as a share of what moves, over the tolerance.
 constexpr double leak_share = 0.01;
 constexpr double slowest = 0.9;
