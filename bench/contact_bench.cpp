@@ -118,7 +118,7 @@ void make_potential(benchmark::State& state) {
     distances.forget();
     distances.update(contact.x);
     const ContactPotential w(distances, contact.map, contact.x, {0.3, 4e-6}, contact.x);
-    pairs = w.pair_count();
+    pairs = w.term_count();
   }
   state.counters["pairs"] = static_cast<double>(pairs);
 }

@@ -15,6 +15,8 @@ constexpr double edges_past = 4;
 /// Iterations from which on a step is hard, and up to which it is easy.
 constexpr int hard = 14, easy = 7;
 constexpr int most_harder = 2;
+/// What is squeezed by what moves anyway would ask for shorter steps without end.
+constexpr int finest = 6;
 
 }  // namespace
 
@@ -54,7 +56,7 @@ int StepControl::choose(const ModelParts& parts, std::span<const double> acceler
   wanted = std::max(wanted, 0) + harder;
   // Steps grow by no more than two at a time.
   if (moving) wanted = std::max(wanted, level - 1);
-  wanted = std::min(wanted, deepest);
+  wanted = std::min(wanted, finest);
   while (ticks % length(wanted) != 0) ++wanted;
   return wanted;
 }

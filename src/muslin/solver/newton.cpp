@@ -23,6 +23,9 @@ constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-4;
 /// A step that has not converged by then is tried in halves, or taken and said not to have.
 constexpr int max_iterations = 30, max_exact_iterations = 300;
 
+/// Iterations in which held vertices that are held back push what is in their way.
+constexpr int most_pushes = 6;
+
 class Newton {
  public:
   Newton(const StepProblem& problem, const IncrementalPotential& function, const SolverSettings& settings,
@@ -155,7 +158,7 @@ class Newton {
     }
     if (report_.newton_iterations == 0 && held_back_ == 0 && error_.bound(x_, g_)) return done(true);
     if (report_.newton_iterations == max_iterations_) return done(false);
-    if (report_.newton_iterations > 0 && held_back_ > 0) push_held();
+    if (report_.newton_iterations > 0 && report_.newton_iterations <= most_pushes && held_back_ > 0) push_held();
     {
       const Stopwatch watch(report_.linearize_seconds);
       inner_.linearize(full(), x_);
