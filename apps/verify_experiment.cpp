@@ -179,7 +179,7 @@ std::string static_solve(double tolerance) {
   return fmt::format(
       "[time]\nframe_rate = 1e-4\nsteps_per_frame = 1\nduration = 1e6\n"
       "[solver]\ntolerance = {:.17g}\n",
-      tolerance);
+      1e-4 * tolerance);
 }
 
 }  // namespace muslin::app
