@@ -318,7 +318,7 @@ std::vector<VerifyCase> friction_cases() {
   return {
       {"slope-holds", "bodies on a slope stay where they are for mu > tan, for a minute", "Coulomb's law",
        false, holds_on_a_slope},
-      {"slope-holds-normal", "so they do with normal effort and automatic steps", "Coulomb's law", true,
+      {"slope-holds-normal", "so they do with normal effort and automatic steps", "Coulomb's law", false,
        holds_by_default},
       {"slope-slides", "and slide with g (sin - mu cos) otherwise", "closed form", false,
        slides_down_a_slope},

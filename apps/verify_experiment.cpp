@@ -178,7 +178,7 @@ double differing(const State& a, const State& b) {
 std::string static_solve(double tolerance) {
   return fmt::format(
       "[time]\nframe_rate = 1e-4\nsteps_per_frame = 1\nduration = 1e6\n"
-      "[solver]\ntolerance = {:.17g}\n",
+      "[solver]\neffort = \"exact\"\ntolerance = {:.17g}\n",
       1e-4 * tolerance);
 }
 
