@@ -27,9 +27,9 @@ constexpr int most_rounds = 32;
 constexpr double pushed_at_once = 0.125;
 /// Edges taken to be this many contact distances long where nothing bends.
 constexpr double edge_distances = 5;
-/// Of the model's gap floor: contact has to hold whatever presses.
+/// This share of the model's gap floor is kept: contact has to hold whatever presses.
 constexpr double floor_share = 0.01;
-/// Of that: motions that may do without a limit.
+/// Motions below this share of that floor need no limit.
 constexpr double slack_share = 1e-4;
 /// The share of gaps that an iteration keeps. Iterations go far; one that ends with some edges at a
 /// thousandth of the range meets forces there that nothing else comes near, and hardly leaves: what moves

@@ -95,7 +95,7 @@ class ContactSurface {
                  b = body_at(point_b).friction.value_or(common);
     return a == b ? a : std::sqrt(a * b);
   }
-  /// Whether a point is of a codimensional triangle: the centre of a sphere, an end of a capsule's axis.
+  /// True for points of a codimensional triangle: the centre of a sphere, an end of a capsule's axis.
   bool is_round(int point) const { return round_triangle(point) >= 0; }
   /// That triangle, the first of several; −1: none.
   int round_triangle(int point) const { return round_triangles_[static_cast<std::size_t>(point)]; }

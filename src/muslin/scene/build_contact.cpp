@@ -94,7 +94,7 @@ class ContactBuilder {
     }
   }
 
-  /// Of a vertex [kg].
+  /// The mean mass of a vertex [kg].
   double mean_mass(const Body& body) const {
     const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
     return std::accumulate(model_.masses.begin() + first, model_.masses.begin() + first + body.vertex_count,

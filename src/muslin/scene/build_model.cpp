@@ -85,7 +85,7 @@ void add_colliders(Model& model) {
   for (std::size_t c = 0; c < colliders.size(); ++c) add_collider(model, std::move(built[c]), colliders[c]);
 }
 
-/// As many as stability at rest allows, with some to spare.
+/// Chooses as many steps as stability at rest needs, with some to spare.
 void choose_explicit_steps(Model& model) {
   TimeSettings& time = model.scene.time;
   if (model.scene.solver.integrator != Integrator::symplectic_euler || time.steps_per_frame) return;

@@ -90,7 +90,7 @@ void Simulation::Impl::advance() {
   if (time().steps_per_frame) {
     report = muslin::advance(*model, terms(), state, step_length(level), scratch);
   } else {
-    // What begins to move within a step is known at its end only.
+    // Motion that begins within a step shows at its end only.
     const RunState before = state;
     for (;;) {
       report = muslin::advance(*model, terms(), state, step_length(level), scratch);
