@@ -7,6 +7,7 @@
 #include <random>
 
 #include "support/draped_cloth.hpp"
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "muslin/contact/intersections.hpp"
@@ -66,7 +67,7 @@ TEST_P(FarWays, NeverMakeCrumpledClothCross) {
   std::uniform_real_distribution<double> any(0, 1);
   double moved = 0;
   for (int step = 0; step < 12; ++step) {
-    guard.begin(scene.q, 1.0 / 240, held);
+    guard.begin(scene.q, held);
     const Vec3 along = 1.8 * edge * Vec3(noise(random), noise(random) - 0.5, noise(random)).normalized();
     for (int iteration = 0; iteration < 3; ++iteration) {
       std::vector<Vec3> d(scene.q.size(), Vec3::Zero());
@@ -81,7 +82,7 @@ TEST_P(FarWays, NeverMakeCrumpledClothCross) {
         moved += d[v].norm() / static_cast<double>(scene.cloth_size);
       }
       ASSERT_FALSE(scene.crosses()) << "step " << step << ", iteration " << iteration;
-      guard.potential(scene.q);
+      guard.potential(scene.q, StepGuard::Friction::anew);
     }
     guard.end(scene.q);
     ASSERT_GT(guard.memory().smallest_gap, 0);
@@ -89,6 +90,33 @@ TEST_P(FarWays, NeverMakeCrumpledClothCross) {
   EXPECT_GT(moved, 4 * edge);
   EXPECT_GT(guard.counts().deflected + guard.counts().shortened, 100U);
   EXPECT_GT(guard.counts().searches, guard.counts().limits);
+}
+
+TEST(RigidWays, AreLeftWholeAwayFromOthersAndLimitedNearThem) {
+  // Folds of the cloth are close to one another, so that the same way, vertex by vertex, would be cut.
+  Scene scene(22);
+  ContactMemory memory;
+  ContactGuard guard(scene.model, memory);
+  std::vector<std::uint8_t> held(scene.q.size(), 0);
+  std::vector<int> groups(scene.q.size(), -1);
+  std::fill(held.begin() + static_cast<std::ptrdiff_t>(scene.cloth_size), held.end(), 1);
+  std::fill(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(scene.cloth_size), 0);
+  const auto way = [&](const Vec3& along) {
+    std::vector<Vec3> d(scene.q.size(), Vec3::Zero());
+    const Eigen::AngleAxisd turn(1e-3, Vec3::UnitY());
+    for (std::size_t v = 0; v < scene.cloth_size; ++v) d[v] = turn * scene.q[v] - scene.q[v] + along;
+    return d;
+  };
+  guard.begin(scene.q, held);
+  const std::vector<Vec3> up = way(Vec3(0, 0.01, 0));
+  std::vector<Vec3> d = up;
+  guard.limit(scene.q, d, groups);
+  EXPECT_EQ(d, up);
+  // The sheet is 5 cm beneath.
+  d = way(Vec3(0, -0.08, 0));
+  guard.limit(scene.q, d, groups);
+  for (std::size_t v = 0; v < d.size(); ++v) scene.q[v] += d[v];
+  EXPECT_FALSE(scene.crosses());
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, FarWays, ::testing::Range(1, 6));

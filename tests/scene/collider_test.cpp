@@ -322,7 +322,7 @@ TEST_F(ColliderModel, SurfacesAreThoseOfTheBodies) {
   EXPECT_EQ(surface.bodies()[0].radius, 0.002);
   // Heavy and soft, both are carried at half the range by a tenth of their points.
   const auto carrying = [&](std::size_t b, double points) {
-    return 9.81 * model.bodies[b].statistics.mass / (0.1 * points * 0.5 * model.contact->distance);
+    return 9.81 * model.bodies[b].statistics.mass / (0.1 * points * 1.5 * model.contact->distance);
   };
   EXPECT_NEAR(surface.bodies()[0].stiffness, carrying(0, static_cast<double>(model.bodies[0].mesh.positions.size())), 1e-6);
   EXPECT_EQ(surface.bodies()[1].radius, 0.05);

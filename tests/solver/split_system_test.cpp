@@ -92,6 +92,27 @@ TEST_P(SplitSystemTest, PreconditionsByASymmetricPositiveDefiniteMatrixAndMultip
   }
 }
 
+TEST(SplitSystem, KeepsLightVerticesBesideABodyThatIsMuchStiffer) {
+  const auto pattern =
+      std::make_shared<const SymmetricPattern>(std::vector<std::pair<int, int>>{{0, 1}}, 2);
+  constexpr std::size_t light = 10;
+  const std::vector<double> masses(light + 2, 1e-4);
+  const std::vector<std::uint8_t> fixed(light + 2, 0);
+  Linearization h;
+  h.reset(masses, fixed, 1);
+  SymmetricMatrix& stiff = h.matrix(pattern, light);
+  for (int v = 0; v < 2; ++v)
+    for (int k = 0; k < 3; ++k) stiff.block(pattern->find(v, v))[k][k] = 1e5F;
+  h.finish();
+  SplitSystem system;
+  system.factor(h);
+  std::vector<Vec3> b = test::random_vectors(masses.size(), 1, 3);
+  b[light].setZero(), b[light + 1].setZero();
+  const double rr = system.start(b, 1);
+  system.direction(0, 0);
+  EXPECT_LT(system.residual(1), 1e-8 * rr);  // nothing couples what is light: the preconditioner is H
+}
+
 TEST_P(SplitSystemTest, TakesCorrectionsOfTheResidualIntoItsDirections) {
   SplitSystem system;
   system.factor(h_);

@@ -12,32 +12,25 @@ struct Law {
   double value = 0, slope = 0, curvature = 0;
 };
 
-/// Energy b(g) of a gap g [m] for stiffness 1 N/m: a spring within the range d̂ [m], and within τ = d̂/2 some
-/// of a barrier as well (Li et al., Incremental Potential Contact, 2020, eq. 6), without bound at zero; twice
-/// continuously differentiable.
+/// Energy b(g) of a gap g [m] for stiffness 1 N/m: a spring at the range d̂ [m], and ever stiffer, without
+/// bound at zero.
 ///
 ///   g ≥ d̂      0
-///   g ≥ τ      ½ (d̂ − g)²
-///   g > 0      ½ (d̂ − g)² − β (τ − g)² ln(g/τ),   β = 0.2
+///   g > 0      ½ (d̂ − g)² d̂/g        slope −½ d̂ ((d̂/g)² − 1),   curvature (d̂/g)³
 ///   else       ∞
 ///
-/// A weak barrier is enough, because nothing relies on it to keep surfaces apart; a strong one takes many
-/// iterations where folds meet at speed (docs/theory/contact.md).
+/// Under a force of f springs pressed to the end the gap is about d̂/√(2f), and the curvature twice the force
+/// over the gap. A logarithmic barrier (Li et al., Incremental Potential Contact, 2020) lets the gap fall as
+/// 1/f: under a heavy load to where Newton's method, which can hardly more than double a gap, comes back from
+/// in many iterations only (docs/theory/contact.md).
 inline Law contact_law(double gap, double range) {
-  constexpr double beta = 0.2;
   if (gap >= range) return {};
-  Law law = {(range - gap) * (range - gap) / 2, gap - range, 1};
-  const double near = range / 2;
-  if (gap >= near) return law;
   if (!(gap > 0)) {
     const double infinite = std::numeric_limits<double>::infinity();
     return {infinite, -infinite, infinite};
   }
-  const double depth = near - gap, log = std::log(gap / near), steep = depth / gap;
-  law.value -= beta * depth * depth * log;
-  law.slope += beta * depth * (2 * log - steep);
-  law.curvature += beta * (steep * (4 + steep) - 2 * log);
-  return law;
+  const double depth = range - gap, ratio = range / gap;
+  return {0.5 * depth * depth * ratio, -0.5 * range * (ratio * ratio - 1), ratio * ratio * ratio};
 }
 
 /// Friction for a limit force μ N of 1 N, as an energy of the slip length s ≥ 0 [m]: smooth below `stick`
@@ -46,8 +39,9 @@ inline Law contact_law(double gap, double range) {
 ///   y = s/stick < 1    stick (y² − y³/3)          force 2y − y²
 ///   else               s − stick/3                force 1
 ///
-/// `curvature` is the secant force/s, which is never less than the derivative: what a lagged, positive
-/// semidefinite Hessian takes.
+/// `curvature` is the secant force/s, which is never less than the derivative. The quadratic with it that
+/// touches the energy at s lies nowhere below: steps that it foretells need no line search, while the true
+/// curvature, zero where surfaces slide, sends them past the other side of sticking.
 inline Law friction_law(double slip, double stick) {
   const double y = slip / stick;
   if (y >= 1) return {slip - stick / 3, 1, 1 / slip};

@@ -35,10 +35,13 @@ constexpr double slack_share = 1e-4;
 /// thousandth of the range meets forces there that nothing else comes near, and hardly leaves: what moves
 /// along at such gaps is stopped.
 constexpr double kept_share = 0.1;
+/// Groups that move less than this share of the gap between them are not limited.
+constexpr double safe_share = 0.5;
 /// In which contact stops the mass of a rigid body [s]; whatever the steps, so that their changes do no work.
 constexpr double stopping_time = 1.0 / 240;
-/// Friction is full at this speed [m/s].
-constexpr double stick_speed = 1e-3;
+/// Slip at which friction is full, as a share of the range; whatever the steps, so that what rests stays where
+/// it is when they change.
+constexpr double stick_share = 0.005;
 
 /// Mean length over edges of what bends.
 double mean_edge(const ContactModel& model) {
@@ -91,7 +94,7 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
       edge_(mean_edge(*model_)),
       longest_(std::max(edges_at_once * edge_, 4 * model_->distance)),
       longest_push_(pushed_at_once * longest_),
-      friction_{model_->friction, stick_speed, stopping_time},
+      friction_{model_->friction, stick_share * model_->distance, stopping_time},
       x_(model_->map->point_count()),
       to_(model_->map->point_count()) {
   for (const ContactBody& body : model_->surface->bodies()) {
@@ -104,10 +107,9 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
   find_again();
 }
 
-void ContactGuard::begin(ConstVectors q, double length, std::span<const std::uint8_t> held) {
+void ContactGuard::begin(ConstVectors q, std::span<const std::uint8_t> held) {
   forget_renewed();
   start_.assign(q.begin(), q.end());
-  friction_.stick_length = stick_speed * length;
   held_.assign(held.begin(), held.end());
   const std::vector<std::uint8_t>& prescribed = model_->limits.prescribed;
   for (std::size_t v = 0; v < prescribed.size(); ++v) held_[v] |= prescribed[v];
@@ -230,6 +232,41 @@ void ContactGuard::limit(ConstVectors q, Vectors d) {
   std::fill(d.begin(), d.end(), Vec3::Zero());
 }
 
+void ContactGuard::limit(ConstVectors q, Vectors d, std::span<const int> groups) {
+  cover(q, d);
+  measure(q);
+  std::vector<double> moves;  // by group, the farthest
+  for (std::size_t v = 0; v < d.size(); ++v) {
+    if (groups[v] < 0) continue;
+    const auto g = static_cast<std::size_t>(groups[v]);
+    if (g >= moves.size()) moves.resize(g + 1, 0);
+    moves[g] = std::max(moves[g], d[v].norm());
+  }
+  std::vector<std::uint8_t> tight(moves.size(), 0);
+  const std::span<const ContactPair> pairs = candidates_.pairs();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto group_of = [&](std::size_t k) {
+      const auto row = model_->map->row(static_cast<std::size_t>(pairs[i].points[k]));
+      return row.empty() ? -1 : groups[static_cast<std::size_t>(row[0].vertex)];
+    };
+    const int a = group_of(0), b = group_of(static_cast<std::size_t>(first_feature_size(pairs[i].kind)));
+    if (a == b) continue;
+    const double way = (a < 0 ? 0 : moves[static_cast<std::size_t>(a)]) +
+                       (b < 0 ? 0 : moves[static_cast<std::size_t>(b)]);
+    const auto gap = [&] { return distances_[i].distance - pairs[i].thickness; };
+    if (way <= safe_share * gap()) continue;
+    distances_.find(i);
+    if (way <= safe_share * gap()) continue;
+    if (a >= 0) tight[static_cast<std::size_t>(a)] = 1;
+    if (b >= 0) tight[static_cast<std::size_t>(b)] = 1;
+  }
+  if (std::find(tight.begin(), tight.end(), 1) == tight.end()) return;
+  const std::vector<Vec3> whole(d.begin(), d.end());
+  limit(q, d);
+  for (std::size_t v = 0; v < d.size(); ++v)
+    if (groups[v] >= 0 && tight[static_cast<std::size_t>(groups[v])] == 0) d[v] = whole[v];
+}
+
 void ContactGuard::advance(Vectors q, ConstVectors d) {
   double farthest = 0;  // in pieces
   for (std::size_t v = 0; v < d.size(); ++v)
@@ -250,14 +287,18 @@ void ContactGuard::advance(Vectors q, ConstVectors d) {
   }
 }
 
-const Potential& ContactGuard::potential(ConstVectors q) {
+const Potential& ContactGuard::potential(ConstVectors q, StepGuard::Friction friction) {
   if (memory_.begin.empty()) {
     piece_.assign(q.size(), Vec3::Zero());
     cover(q, piece_);
   }
   const Stopwatch watch(counts_.potential_seconds);
   measure(q);
-  potential_.emplace(distances_, model_->map, q, friction_, start_, memory_.slips);
+  if (friction == StepGuard::Friction::kept) {
+    *potential_ = ContactPotential(distances_, model_->map, q, *potential_);
+  } else {
+    potential_.emplace(distances_, model_->map, q, friction_, start_, memory_.slips);
+  }
   return *potential_;
 }
 

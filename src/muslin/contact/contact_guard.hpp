@@ -37,11 +37,12 @@ class ContactGuard : public StepGuard {
   /// it is of another surface.
   ContactGuard(std::shared_ptr<const ContactModel> model, ContactMemory& memory);
 
-  void begin(ConstVectors q, double length, std::span<const std::uint8_t> held) override;
+  void begin(ConstVectors q, std::span<const std::uint8_t> held) override;
   double slack() const override;
   void limit(ConstVectors q, Vectors d) override;
+  void limit(ConstVectors q, Vectors d, std::span<const int> groups) override;
   void advance(Vectors q, ConstVectors d) override;
-  const Potential& potential(ConstVectors q) override;
+  const Potential& potential(ConstVectors q, StepGuard::Friction friction) override;
   void for_each_contact(const std::function<void(const Contact&)>& visit) const override;
   void end(ConstVectors q) override;
 
@@ -78,7 +79,7 @@ class ContactGuard : public StepGuard {
   double edge_;          ///< mean length of an edge of what bends [m]
   double longest_;       ///< displacement that is limited in one piece [m]
   double longest_push_;  ///< the same of what pushes others along keyframes
-  Friction friction_;
+  muslin::Friction friction_;
   std::vector<Vec3> start_;  ///< q where the step began
   std::vector<std::uint8_t> held_;
   std::optional<ContactPotential> potential_;

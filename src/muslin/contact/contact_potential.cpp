@@ -53,8 +53,7 @@ Vec3 known_slip(const ContactSurface& surface, std::uint64_t key, std::span<cons
 }  // namespace
 
 ContactPotential::ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map,
-                                   ConstVectors lagged, Friction friction, ConstVectors start,
-                                   std::span<const PairSlip> slips)
+                                   ConstVectors lagged, Friction friction)
     : surface_(distances.candidates().shared_surface()),
       map_(std::move(map)),
       friction_(friction),
@@ -63,12 +62,27 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
   if (!(friction.coefficient >= 0) || !(friction.stick_length > 0))
     throw Error(ErrorKind::usage, "a friction coefficient is negative",
                 "give 0 or more, and a stick length above 0");
-  if (lagged.size() != map_->vertex_count() || start.size() != lagged.size() ||
-      distances.points().size() != map_->point_count())
+  if (lagged.size() != map_->vertex_count() || distances.points().size() != map_->point_count())
     throw Error(ErrorKind::usage, "a contact potential needs one position for each vertex",
                 "give #V positions");
   terms_ = contact_terms(distances, friction.dt);
   contacts_ = merged_contacts(*surface_, terms_, lagged_);
+}
+
+ContactPotential::ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map,
+                                   ConstVectors lagged, const ContactPotential& friction)
+    : ContactPotential(distances, std::move(map), lagged, friction.friction_) {
+  rubs_ = friction.rubs_;
+  carried_ = friction.carried_;
+}
+
+ContactPotential::ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map,
+                                   ConstVectors lagged, Friction friction, ConstVectors start,
+                                   std::span<const PairSlip> slips)
+    : ContactPotential(distances, std::move(map), lagged, friction) {
+  if (start.size() != lagged.size())
+    throw Error(ErrorKind::usage, "a contact potential needs one position for each vertex",
+                "give #V positions");
   std::vector<Vec3> start_buffer;
   const ConstVectors x_start = points(start, start_buffer);
   for (const MergedContact& contact : contacts_) {
@@ -228,15 +242,8 @@ ContactHessian ContactPotential::hessian(ConstVectors q) const {
     add_tilt(contact, x, rows);
   }
   for (const Rub& rub : rubs_) {
-    const Vec3 e = slip(rub, x, q);
-    const double length = e.norm();
-    const double secant = rub.limit * friction_law(length, friction_.stick_length).curvature;
+    const double secant = rub.limit * friction_law(slip(rub, x, q).norm(), friction_.stick_length).curvature;
     rows.push_back({rub.contact.points, rub.weights, rub.contact.normal, 0, secant, carried(rub)});
-    // Along the slip the force grows more slowly than across it.
-    const double y = length / friction_.stick_length;
-    const double tangent = y < 1 ? rub.limit * 2 * (1 - y) / friction_.stick_length : 0;
-    if (length > 0)
-      rows.push_back({rub.contact.points, rub.weights, e / length, tangent - secant, 0, carried(rub)});
   }
   return {*map_, rows};
 }

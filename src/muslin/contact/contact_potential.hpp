@@ -30,8 +30,8 @@ namespace muslin {
 
 struct Friction {
   double coefficient = 0;      ///< Coulomb's μ of bodies without one of their own
-  double stick_length = 4e-6;  ///< slip at which friction is full [m]: ε_v dt, for instance 1 mm/s · 1/240 s
-  double dt = 1.0 / 240;       ///< length of the step [s]
+  double stick_length = 1e-5;  ///< slip at which friction is full [m]
+  double dt = 1.0 / 240;       ///< in which contact stops rigid bodies [s]
 };
 
 /// The slip of a pair that sticks or slides, by ContactPair::key(); part of the moving state.
@@ -48,6 +48,9 @@ class ContactPotential : public Potential {
   /// coefficient is negative or sizes do not fit.
   ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
                    Friction friction, ConstVectors start, std::span<const PairSlip> slips = {});
+  /// The same with the friction of another potential of this step, lagged where that has it.
+  ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
+                   const ContactPotential& friction);
 
   double value(ConstVectors q) const override;
   void add_gradient(ConstVectors q, Vectors g) const override;
@@ -96,6 +99,9 @@ class ContactPotential : public Potential {
   std::span<const SurfaceMap::Entry> carried(const Rub& rub) const;
   Vec3 slip(const Rub& rub, ConstVectors x, ConstVectors q) const;
   void add_tilt(const MergedContact& contact, ConstVectors x, std::vector<ContactRow>& rows) const;
+
+  ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
+                   Friction friction);
 
   std::shared_ptr<const ContactSurface> surface_;
   std::shared_ptr<const SurfaceMap> map_;

@@ -90,10 +90,13 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
     if (is_new) {
       edges_.push_back(side.edge);
       edge_shares_.push_back(0);
+      const int opposite = triangles_[t][(side.side + 2) % 3];
+      lone_corners_.push_back(opposite == side.edge[0] || opposite == side.edge[1] ? -1 : opposite);
       ownership_[t].edges = static_cast<std::uint8_t>(ownership_[t].edges | 1U << side.side);
     }
     // The two sides of a segment (a, b, b) are one edge of one triangle.
     if (is_new || side.triangle != sides[i - 1].triangle) ++edge_shares_.back();
+    if (edge_shares_.back() > 1) lone_corners_.back() = -1;
     triangle_edges_[t][side.side] = static_cast<int>(edges_.size()) - 1;
   }
 }

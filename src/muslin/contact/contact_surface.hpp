@@ -70,6 +70,8 @@ class ContactSurface {
   std::span<const ContactPlane> planes() const { return planes_; }
   /// #T by 3; −1 where a codimensional triangle has no edge.
   std::span<const Vec3i> triangle_edges() const { return triangle_edges_; }
+  /// The corner opposite to an edge that has one triangle only; −1 if it has several or no such corner.
+  int lone_corner(int edge) const { return lone_corners_[static_cast<std::size_t>(edge)]; }
   std::span<const Ownership> ownership() const { return ownership_; }
 
   int body_of(int point) const { return body_of_point_[static_cast<std::size_t>(point)]; }
@@ -106,6 +108,7 @@ class ContactSurface {
  private:
   std::vector<Vec3i> triangles_, triangle_edges_;
   std::vector<Edge> edges_;
+  std::vector<int> lone_corners_;  // by edge
   std::vector<Ownership> ownership_;
   std::vector<int> body_of_point_, point_shares_, edge_shares_;
   std::vector<int> round_triangles_;

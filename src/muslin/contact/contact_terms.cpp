@@ -28,8 +28,10 @@ double smoothstep(double y) {
 }
 
 /// The factor of two edges: 1 where both closest points are well inside, 0 at ends and where the edges are
-/// parallel.
-double edge_factor(const ContactPair& pair, const PairGeometry& at, ConstVectors x) {
+/// parallel. An end that is the corner opposite to the other edge in its only triangle stays: no pair of that
+/// vertex meets the edge, and nothing else keeps the triangle from being flattened.
+double edge_factor(const ContactSurface& surface, const ContactPair& pair, const PairGeometry& at,
+                   ConstVectors x) {
   const auto edge = [&](std::size_t i) {
     return Vec3(x[static_cast<std::size_t>(pair.points[i + 1])] -
                 x[static_cast<std::size_t>(pair.points[i])]);
@@ -37,13 +39,16 @@ double edge_factor(const ContactPair& pair, const PairGeometry& at, ConstVectors
   const Vec3 u = edge(0), v = edge(2);
   const double sine = u.cross(v).squaredNorm() / std::max(u.squaredNorm() * v.squaredNorm(), 1e-300);
   const double apart = std::min(1.0, sine / parallel_share);
-  const auto inside = [&](double t, double squared_length) {
+  const auto inside = [&](double t, double squared_length, std::size_t first, int other) {
     const double width =
         std::min(end_share, end_ranges * pair.range / std::sqrt(std::max(squared_length, 1e-300)));
-    return smoothstep(std::min(t, 1 - t) / width);
+    const int lone = surface.lone_corner(other);
+    const double begin = pair.points[first] == lone ? 1 : smoothstep(t / width);
+    const double end = pair.points[first + 1] == lone ? 1 : smoothstep((1 - t) / width);
+    return begin * end;
   };
-  return inside(at.weights[1], u.squaredNorm()) * inside(-at.weights[3], v.squaredNorm()) * apart *
-         (2 - apart);
+  return inside(at.weights[1], u.squaredNorm(), 0, pair.second) *
+         inside(-at.weights[3], v.squaredNorm(), 2, pair.first) * apart * (2 - apart);
 }
 
 PairGeometry of_difference(const Vec3& difference, const std::array<double, 4>& weights) {
@@ -268,7 +273,7 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt
         continue;
       }
       const double factor =
-          edge_factor(pair, distances[static_cast<std::size_t>(i)], distances.points());
+          edge_factor(surface, pair, distances[static_cast<std::size_t>(i)], distances.points());
       const double range = range_of(surface, pair, distances.points());
       if (factor > 0 && range > 0) {
         terms.push_back({ContactTerm::Kind::edge_edge, pair.points, -1, pair.key(), pair.thickness,

@@ -1,10 +1,12 @@
-// Conservation of volume over the tetrahedra of a lattice.
+// Conservation of the volume of each voxel of a lattice.
 //
-//   W = Σ ½ κ f V₀ (V/V₀ − 1)²,   V = (x₁−x₀)·((x₂−x₀)×(x₃−x₀)) / 6,   V₀ = width³/6
+//   W = Σ ½ κ f V₀ (V/V₀ − 1)²,   V₀ = width³
 //
-// with f the fill of the voxel. V is a polynomial, so W is smooth everywhere: also a flat or inverted
-// tetrahedron (V ≤ 0) has a force, which turns it back. The idea of keeping tetrahedral volumes beside the
-// springs of a mass-spring system: Teschner, Heidelberger, Müller, Gross 2004, and Diziol, Bender, Bayer
+// with f the fill of the voxel and V the volume within its eight corners, faces taken as bilinear patches. One
+// volume for each voxel, with the corners in equal roles: the six tetrahedra that a voxel is cut into lean
+// towards one diagonal, push a body that bounces aside, and lock. V is a polynomial, so W is smooth everywhere:
+// also a flat or inverted voxel (V ≤ 0) has a force, which turns it back. The idea of keeping volumes beside
+// the springs of a mass-spring system: Teschner, Heidelberger, Müller, Gross 2004, and Diziol, Bender, Bayer
 // 2009 for whole bodies. docs/theory/volume.md.
 #pragma once
 
@@ -30,12 +32,12 @@ class VolumeEnergy : public Potential {
   struct Cell {
     std::array<int, 8> vertices;
     double modulus = 0;  ///< κ f [N/m²]
+    std::size_t vertex(std::size_t corner) const { return static_cast<std::size_t>(vertices[corner]); }
   };
   template <class Kernel>
   void for_each_cell(const Kernel& kernel) const;
 
-  double rest_volume_ = 0;  ///< of a tetrahedron [m³]
-  std::array<std::array<int, 4>, 6> corners_{};
+  double rest_volume_ = 0;  ///< of a voxel [m³]
   /// By parity of the voxel's coordinates: cells of one colour share no vertex, so each colour can be
   /// added in parallel, and every vertex sums its cells in the order of the colours.
   std::array<std::vector<Cell>, 8> colours_;

@@ -65,7 +65,16 @@ RelativeStiffness& Linearization::relative_stiffness(std::size_t first, std::siz
   return relative;
 }
 
+/// In pieces that end where block matrices do: whoever works with groups of vertices in one unit of
+/// measurement would lose cloth beside a rigid body, which is a million times as stiff.
 void Linearization::cover_gap(std::size_t begin, std::size_t end) {
+  for (const SymmetricMatrix* matrix : matrices_) {
+    for (const std::size_t cut : {matrix->first(), matrix->first() + matrix->pattern().vertex_count()}) {
+      if (cut <= begin || cut >= end) continue;
+      cover_gap(begin, cut);
+      return cover_gap(cut, end);
+    }
+  }
   if (begin == end) return;
   const int count = static_cast<int>(end - begin);
   for (const auto& set : storage_) {

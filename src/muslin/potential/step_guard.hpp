@@ -16,9 +16,9 @@ class StepGuard {
  public:
   virtual ~StepGuard() = default;
 
-  /// A step of `length` [s] begins at x; one that was begun and not ended is forgotten. Others give way to
-  /// vertices v for which held[v] (#V) is not 0.
-  virtual void begin(ConstVectors x, double length, std::span<const std::uint8_t> held) = 0;
+  /// A step begins at x; one that was begun and not ended is forgotten. Others give way to vertices v for
+  /// which held[v] (#V) is not 0.
+  virtual void begin(ConstVectors x, std::span<const std::uint8_t> held) = 0;
 
   /// Motions up to this length need not be limited [m].
   virtual double slack() const = 0;
@@ -26,13 +26,18 @@ class StepGuard {
   /// Changes the displacement d from x, vertex by vertex, such that the straight way to x + t d is safe for
   /// all t in [0, 1]. `x` must have been reached from where the step began by such ways only.
   virtual void limit(ConstVectors x, Vectors d) = 0;
+  /// The same for a displacement that moves each group of vertices (#V, −1: of none) as a rigid body. That
+  /// brings nothing within a group closer, so that only groups that are close to others are limited.
+  virtual void limit(ConstVectors x, Vectors d, std::span<const int> groups) = 0;
 
   /// Advances x by d in collision-free substeps, however long d is.
   virtual void advance(Vectors x, ConstVectors d) = 0;
 
-  /// The energy of contact near x, with what is lagged taken at x: to be asked for anew at every iterate.
-  /// Valid until the next call.
-  virtual const Potential& potential(ConstVectors x) = 0;
+  /// Where friction takes its normal forces and closest points.
+  enum class Friction { anew, kept };
+  /// The energy of contact near x: to be asked for anew at every iterate. Friction is lagged at x, or kept as
+  /// the last potential of this step has it. Valid until the next call.
+  virtual const Potential& potential(ConstVectors x, Friction friction) = 0;
 
   struct Weight {
     int vertex = 0;

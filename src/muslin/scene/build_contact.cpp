@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/contact/contact_energy.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/material/lattice_moduli.hpp"
 
@@ -231,7 +232,8 @@ class ContactBuilder {
     model->names = std::move(names_);
     model->faces = std::move(faces_);
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const double carrying = weights_[b] / (carrying_share * 0.5 * model->distance);
+      const double force = -contact_law(0.5 * model->distance, model->distance).slope;
+      const double carrying = weights_[b] / (carrying_share * force);
       bodies_[b].stiffness = std::max(bodies_[b].stiffness, carrying);
     }
     model->surface = std::make_shared<ContactSurface>(std::move(triangles_), std::move(body_of_point_),

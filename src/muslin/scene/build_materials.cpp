@@ -137,14 +137,16 @@ class BodyMaterial {
 };
 
 /// In units of mass/step²: distortions swing at √1000 = 32 radians a step, and a body that is accelerated by
-/// g through a point of its surface is dented there by about 5 g step²/1000, 1 µm at steps of 1/240 s.
-constexpr double rigidity = 1000;
+/// g through a point of its surface is dented there by about 5 g step²/1000, 1 µm at steps of 1/240 s. Longer
+/// steps keep the rigidity of these: what rests on friction would slip by a dent whenever their length changes.
+constexpr double rigidity = 1000, longest_step = 1.0 / 240;
 
 class Rigidity : public Load {
  public:
   Rigidity(const Vec3& radii, double stiffness) : radii_(radii), stiffness_(stiffness) {}
   std::unique_ptr<Potential> potential(const StepContext& step) const override {
-    return std::make_unique<AffineBodyEnergy>(radii_, stiffness_ / (step.length * step.length));
+    const double length = std::min(step.length, longest_step);
+    return std::make_unique<AffineBodyEnergy>(radii_, stiffness_ / (length * length));
   }
 
  private:

@@ -20,7 +20,7 @@ void add(const ContactCounts& counts, RunCosts& costs) {
 }
 
 /// A step that missed its tolerance is tried in halves so often before it is taken as it is.
-constexpr int patient_halvings = 1;
+constexpr int patient_halvings = 4;
 
 class Advance {
  public:

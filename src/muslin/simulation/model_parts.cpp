@@ -10,6 +10,8 @@ namespace {
 /// The linear solver works in single precision while ‖block‖ dt² / mass is below 3e5. In units of
 /// BodyStatistics::stable_step, which is 2/√ratio or less, that is a step of this length.
 constexpr double stable_steps = 150;
+/// The same of rigid bodies, as stiff as they are [s].
+constexpr double longest_rigid = 1.0 / 16;
 
 class Joined {
  public:
@@ -54,6 +56,7 @@ ModelParts find_parts(const Model& model) {
     join_body(body, joined);
     const auto first = static_cast<std::size_t>(body.first_vertex), size = static_cast<std::size_t>(body.vertex_count);
     std::fill_n(edge_of.begin() + body.first_vertex, size, body.spacing());
+    if (body.is_rigid()) std::fill_n(longest_of.begin() + body.first_vertex, size, longest_rigid);
     if (body.statistics.stable_step > 0)
       std::fill_n(longest_of.begin() + body.first_vertex, size, stable_steps * body.statistics.stable_step);
     std::fill_n(covered.begin() + static_cast<std::ptrdiff_t>(first), size, std::uint8_t{1});

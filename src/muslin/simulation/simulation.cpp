@@ -71,8 +71,8 @@ void Simulation::Impl::touch() {
   ContactGuard& guard = *scratch.guard(*model, state);
   const std::vector<Vec3>& x = state.motion.positions;
   if (options.allow_tangled) guard.leave_tangled(x);
-  guard.begin(x, time().step(), scratch.fixed);
-  guard.potential(x);
+  guard.begin(x, scratch.fixed);
+  guard.potential(x, StepGuard::Friction::anew);
   guard.end(x);
   state.energy.pressed = guard.last_potential().parts(x).normal;
 }

@@ -23,6 +23,10 @@ constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-4;
 /// A step that has not converged by then is tried in halves, or taken and said not to have.
 constexpr int max_iterations = 30, max_exact_iterations = 300;
 
+/// Iterations in which friction is lagged anew. Where forces of contact change from one to the next, so does
+/// the minimum, and none would be reached.
+constexpr int renewals = 3;
+
 /// Iterations in which held vertices that are held back push what is in their way.
 constexpr int most_pushes = 6;
 
@@ -45,6 +49,7 @@ class Newton {
         count_(x.size()),
         scale_(function.dt() * function.dt()),
         error_(problem, function, settings.error_tolerance()),
+        loosest_(std::clamp(settings.error_tolerance(), tightest_forcing, loosest_forcing)),
         max_iterations_(settings.effort == Effort::exact ? max_exact_iterations : max_iterations),
         with_contact_(problem) {
     for (auto* vectors : {&there_, &g_, &s_, &d_, &workspace.base}) vectors->resize(count_);
@@ -67,6 +72,7 @@ class Newton {
     report_.residual = imbalance_.largest;
     report_.worst_vertex = imbalance_.vertex;
     report_.held_back = held_back_;
+    if (report_.made() && report_.newton_iterations > 0) correct_work();
     if (report_.made()) correct_rigid_motions();
     return report_;
   }
@@ -120,10 +126,20 @@ class Newton {
     return true;
   }
 
-  /// Unless a potential does not let it.
+  void correct_work() {
+    std::copy(x_.begin(), x_.end(), there_.begin());
+    muslin::correct_work(problem_, full(), guard_, state_.positions, g_, x_);
+    keep_if_allowed();
+  }
+
   void correct_rigid_motions() {
     std::copy(x_.begin(), x_.end(), there_.begin());
     muslin::correct_rigid_motions(problem_, function_, guard_, g_, x_);
+    keep_if_allowed();
+  }
+
+  /// Goes back to there_ if a potential does not let x_ be reached.
+  void keep_if_allowed() {
     for_each_vertex(count_, [&](std::size_t v) { d_[v] = x_[v] - there_[v]; });
     if (!(function_.max_step(there_, d_) > 1)) std::copy(there_.begin(), there_.end(), x_.begin());
   }
@@ -140,7 +156,8 @@ class Newton {
       std::swap(g_, workspace_.base);
       return;
     }
-    contact_ = &guard_->potential(x_);
+    contact_ = &guard_->potential(x_, report_.newton_iterations < renewals ? StepGuard::Friction::anew
+                                                                          : StepGuard::Friction::kept);
     with_contact_.potentials.back() = contact_;
     set_zero(g_);
     contact_value_ = contact_->add_gradient_and_value(x_, g_);
@@ -175,8 +192,8 @@ class Newton {
     inner_.precondition(g_, there_);
     const bool good = error_.end(x_, state_.positions, g_, there_, s_, d_, length_t_);
     const double shrink = imbalance_.norm / norm;
-    forcing_ = std::clamp(0.9 * shrink * shrink, tightest_forcing, loosest_forcing);
-    forcing_ = std::clamp(std::max(forcing_, error_.wanted_forcing()), tightest_forcing, loosest_forcing);
+    forcing_ = std::clamp(0.9 * shrink * shrink, tightest_forcing, loosest_);
+    forcing_ = std::clamp(std::max(forcing_, error_.wanted_forcing()), tightest_forcing, loosest_);
     return good ? done(true) : true;
   }
 
@@ -272,6 +289,7 @@ class Newton {
   std::size_t count_;
   double scale_;
   StepError error_;
+  double loosest_;  ///< forcing; no looser than the tolerance, since residuals hardly show smooth errors
   int max_iterations_;
   StepProblem with_contact_;
   StepReport report_;
@@ -279,7 +297,7 @@ class Newton {
   IncrementalPotential::Imbalance imbalance_;  ///< at x, of everything
   const Potential* contact_ = nullptr;
   double contact_value_ = 0;
-  double forcing_ = loosest_forcing;
+  double forcing_ = loosest_;
   double length_t_ = 1;  ///< the share of d_ that was gone
   int held_back_ = 0;
 };

@@ -1,5 +1,6 @@
 #include "muslin/solver/rigid_correction.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -11,11 +12,17 @@ namespace {
 
 constexpr double no_weight = 1e-9;  // of what a contact moves along with a group
 constexpr int turns = 3;            // Newton iterations for the rotation
+/// Work is corrected by no more than this share of the motion: where it would take more, as in what has come
+/// to rest, the motion is no more than what is left of errors. And not where energy is hardly convex.
+constexpr double most_share = 0.05, least_curvature = 0.1;
+/// What moves by less than this share of what loads could move it by is at rest.
+constexpr double resting = 0.1;
 
 /// Parts that move together, found by joining pairs.
 class Groups {
  public:
   explicit Groups(std::size_t parts) : above_(parts) { std::iota(above_.begin(), above_.end(), std::size_t{0}); }
+  std::size_t size() const { return above_.size(); }
   std::size_t of(std::size_t part) {
     while (above_[part] != part) part = above_[part] = above_[above_[part]];
     return part;
@@ -29,6 +36,52 @@ class Groups {
   std::vector<std::size_t> above_;
 };
 
+std::size_t part_of(const StepProblem& problem, std::size_t v) {
+  return problem.parts.empty() ? std::size_t{0} : static_cast<std::size_t>(problem.parts[v]);
+}
+
+/// Parts of the step's vertices, those that touch joined.
+Groups touching_groups(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard) {
+  std::size_t parts = 1;
+  for (std::size_t v = 0; v < problem.parts.size(); ++v)
+    parts = std::max(parts, static_cast<std::size_t>(problem.parts[v]) + 1);
+  Groups groups(parts);
+  if (!guard) return groups;
+  guard->for_each_contact([&](const StepGuard::Contact& contact) {
+    std::size_t first = parts;
+    for (const StepGuard::Weight& w : contact.weights) {
+      if (function.held(static_cast<std::size_t>(w.vertex))) continue;
+      const std::size_t part = part_of(problem, static_cast<std::size_t>(w.vertex));
+      if (first < parts) groups.join(first, part);
+      first = part;
+    }
+  });
+  return groups;
+}
+
+/// visit(group, stiffness) for each contact of a group with what is not of it, its stiffness against
+/// translations of the group times dt² [kg].
+template <class Visit>
+void for_each_outer_contact(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
+                            Groups& groups, const Visit& visit) {
+  if (!guard) return;
+  const double scale = function.dt() * function.dt();
+  guard->for_each_contact([&](const StepGuard::Contact& contact) {
+    double weight = 0;
+    std::size_t part = groups.size();
+    for (const StepGuard::Weight& w : contact.weights) {
+      if (function.held(static_cast<std::size_t>(w.vertex))) continue;
+      weight += w.weight;
+      part = part_of(problem, static_cast<std::size_t>(w.vertex));
+    }
+    if (part == groups.size() || std::abs(weight) < no_weight) return;
+    const Mat3 along = contact.normal * contact.normal.transpose();
+    visit(groups.of(part), Mat3(scale * weight * weight *
+                                (contact.normal_stiffness * along +
+                                 contact.tangential * (Mat3::Identity() - along))));
+  });
+}
+
 struct Group {
   double mass = 0;
   bool held = false, outside = false;  ///< has held vertices; touches what is not of it
@@ -37,6 +90,24 @@ struct Group {
   Mat3 inertia = Mat3::Zero();
   Vec3 shift = Vec3::Zero();
   Mat3 rotation = Mat3::Identity();
+};
+
+/// How a group has moved in a step, and what that did against what is out of balance.
+struct MovingGroup {
+  double mass = 0;
+  bool held = false, outside = false;  ///< has held vertices; touches what is not of it
+  Vec3 centre = Vec3::Zero(), shift = Vec3::Zero(), turn = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero(), stiffness = Mat3::Zero();
+  double work = 0, curvature = 0, inertial = 0;
+  double falls = 0;  ///< how far loads alone move it in a step [m]
+
+  /// Of its motion that is added to it.
+  double share() const {
+    if (!(curvature >= least_curvature * inertial) || curvature == 0) return 0;
+    if (inertial < mass * resting * resting * falls * falls) return 0;
+    const double share = -work / curvature;
+    return std::abs(share) <= most_share ? share : 0;
+  }
 };
 
 Mat3 rotation_of(const Vec3& angle) {
@@ -49,40 +120,14 @@ Mat3 rotation_of(const Vec3& angle) {
 void correct_rigid_motions(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
                            ConstVectors g, Vectors x) {
   const std::size_t count = x.size();
-  const auto part_of = [&](std::size_t v) {
-    return problem.parts.empty() ? std::size_t{0} : static_cast<std::size_t>(problem.parts[v]);
-  };
-  std::size_t parts = 1;
-  for (std::size_t v = 0; v < count; ++v) parts = std::max(parts, part_of(v) + 1);
-  Groups groups(parts);
+  const auto part_of = [&](std::size_t v) { return muslin::part_of(problem, v); };
+  Groups groups = touching_groups(problem, function, guard);
+  const std::size_t parts = groups.size();
   std::vector<Group> all(parts);
-  if (guard) {
-    guard->for_each_contact([&](const StepGuard::Contact& contact) {
-      std::size_t first = parts;
-      for (const StepGuard::Weight& w : contact.weights) {
-        if (function.held(static_cast<std::size_t>(w.vertex))) continue;
-        const std::size_t part = part_of(static_cast<std::size_t>(w.vertex));
-        if (first < parts) groups.join(first, part);
-        first = part;
-      }
-    });
-    const double scale = function.dt() * function.dt();
-    guard->for_each_contact([&](const StepGuard::Contact& contact) {
-      double weight = 0;
-      std::size_t part = parts;
-      for (const StepGuard::Weight& w : contact.weights) {
-        if (function.held(static_cast<std::size_t>(w.vertex))) continue;
-        weight += w.weight;
-        part = part_of(static_cast<std::size_t>(w.vertex));
-      }
-      if (part == parts || std::abs(weight) < no_weight) return;
-      Group& group = all[groups.of(part)];
-      group.outside = true;
-      const Mat3 along = contact.normal * contact.normal.transpose();
-      group.stiffness += scale * weight * weight *
-                         (contact.normal_stiffness * along + contact.tangential * (Mat3::Identity() - along));
-    });
-  }
+  for_each_outer_contact(problem, function, guard, groups, [&](std::size_t g, const Mat3& stiffness) {
+    all[g].outside = true;
+    all[g].stiffness += stiffness;
+  });
   for (std::size_t v = 0; v < count; ++v) {
     Group& group = all[groups.of(part_of(v))];
     if (function.held(v)) {
@@ -135,17 +180,95 @@ void correct_rigid_motions(const StepProblem& problem, const IncrementalPotentia
     }
   }
   std::vector<Vec3> d(count, Vec3::Zero());
+  std::vector<int> group_of(count, -1);
   double farthest = 0;
   for (std::size_t v = 0; v < count; ++v) {
     const Group* const group = moves(v);
     if (!group) continue;
     const Vec3 r = x[v] - group->centre;
     d[v] = group->shift + (group->rotation * r - r);
+    group_of[v] = static_cast<int>(groups.of(part_of(v)));
     if (!d[v].allFinite()) return;
     farthest = std::max(farthest, d[v].norm());
   }
-  if (guard && farthest > guard->slack()) guard->limit(x, d);
+  if (guard && farthest > guard->slack()) guard->limit(x, d, group_of);
   for (std::size_t v = 0; v < count; ++v) x[v] += d[v];
+}
+
+void correct_work(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
+                  ConstVectors from, Vectors g, Vectors x) {
+  const std::size_t count = x.size();
+  Groups groups = touching_groups(problem, function, guard);
+  std::vector<MovingGroup> all(groups.size());
+  for_each_outer_contact(problem, function, guard, groups, [&](std::size_t touching, const Mat3& stiffness) {
+    all[touching].outside = true;
+    all[touching].stiffness += stiffness;
+  });
+  const auto group_of = [&](std::size_t v) { return groups.of(part_of(problem, v)); };
+  for (std::size_t v = 0; v < count; ++v) {
+    MovingGroup& group = all[group_of(v)];
+    if (function.held(v)) {
+      group.held = true;
+      continue;
+    }
+    const double m = problem.masses[v];
+    const std::size_t part = part_of(problem, v);
+    if (part < problem.accelerations.size())
+      group.falls = std::max(group.falls, problem.accelerations[part] * function.dt() * function.dt());
+    group.mass += m;
+    group.centre += m * x[v];
+    group.shift += m * (x[v] - from[v]);
+  }
+  for (MovingGroup& group : all) {
+    if (group.mass > 0) group.centre /= group.mass, group.shift /= group.mass;
+    // Along what it touches a group is free, against it it is not.
+    if (group.outside)
+      group.shift = (Mat3::Identity() + group.stiffness / group.mass).ldlt().solve(group.shift).eval();
+    if (group.held) group.shift.setZero();
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    MovingGroup& group = all[group_of(v)];
+    if (function.held(v) || group.held || group.outside) continue;
+    const Vec3 r = x[v] - group.centre;
+    const double m = problem.masses[v];
+    group.turn += m * r.cross(x[v] - from[v]);
+    group.inertia += m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  for (MovingGroup& group : all) {
+    const double least = 1e-12 * group.inertia.trace();
+    group.turn = least > 0 ? Vec3((group.inertia + least * Mat3::Identity()).ldlt().solve(group.turn))
+                           : Vec3(Vec3::Zero());
+  }
+  std::vector<Vec3> s(count, Vec3::Zero()), hs(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const MovingGroup& group = all[group_of(v)];
+    if (function.held(v)) continue;
+    s[v] = x[v] - from[v];
+    s[v] -= group.shift + group.turn.cross(x[v] - group.centre);
+  }
+  function.hessian_product(x, s, hs);
+  for (std::size_t v = 0; v < count; ++v) {
+    if (function.held(v)) continue;
+    MovingGroup& group = all[group_of(v)];
+    group.work += g[v].dot(s[v]);
+    group.curvature += hs[v].dot(s[v]);
+    group.inertial += problem.masses[v] * s[v].squaredNorm();
+  }
+  double farthest = 0;
+  for (std::size_t v = 0; v < count; ++v) {
+    const MovingGroup& group = all[group_of(v)];
+    const double share = function.held(v) ? 0.0 : group.share();
+    s[v] *= share;
+    hs[v] *= share;
+    if (!s[v].allFinite() || !hs[v].allFinite()) return;
+    farthest = std::max(farthest, s[v].norm());
+  }
+  if (farthest == 0) return;
+  if (guard && farthest > guard->slack()) guard->limit(x, s);
+  for (std::size_t v = 0; v < count; ++v) {
+    x[v] += s[v];
+    g[v] += hs[v];
+  }
 }
 
 }  // namespace muslin

@@ -78,7 +78,7 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
   const std::size_t count = state.positions.size();
   const double dt = context.dt;
   StepProblem problem = given;
-  if (problem.guard) problem.potentials.push_back(&problem.guard->potential(state.positions));
+  if (problem.guard) problem.potentials.push_back(&problem.guard->potential(state.positions, StepGuard::Friction::anew));
   const IncrementalPotential function(problem, context.inertial_prediction, dt);
   std::vector<Vec3> coast(count), rhs(count), s(count), residual(count), g(count);
   for_each_vertex(count, [&](std::size_t v) {
@@ -143,7 +143,7 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
     if (settings.integrator == Integrator::symplectic_euler)
       throw Error(ErrorKind::usage, "symplectic_euler does not work with contact",
                   "use implicit_euler, bdf2 or linearly_implicit_euler");
-    problem.guard->begin(state.positions, context.length, problem.fixed);
+    problem.guard->begin(state.positions, problem.fixed);
   }
   switch (settings.integrator) {
     case Integrator::implicit_euler:

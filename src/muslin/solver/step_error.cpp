@@ -10,9 +10,11 @@ namespace {
 constexpr double local_share = 0.1;
 /// The share of an edge that is always good enough.
 constexpr double smallest = 1e-14;
-/// Work of the residual, as a share of what moves, over the tolerance.
+/// Work of the residual, as a share of what moves, over the tolerance: what correct_work can take out.
 constexpr double leak_share = 0.01;
 constexpr double slowest = 0.9;
+/// What lies on something presses contact by what it would fall in about this time [s], however long steps are.
+constexpr double stopping_time = 1.0 / 240;
 
 }  // namespace
 
@@ -36,7 +38,9 @@ void StepError::find_allowed(ConstVectors x) {
     Part& part = parts_[p];
     if (!(part.mass > 0)) continue;
     double motion = std::sqrt(squares[p] / part.mass);
-    if (p < problem_.accelerations.size()) motion = std::max(motion, problem_.accelerations[p] * dt * dt);
+    const double settling = problem_.guard ? std::min(dt, stopping_time) : dt;
+    if (p < problem_.accelerations.size())
+      motion = std::max(motion, problem_.accelerations[p] * settling * settling);
     const double edge = p < problem_.edges.size() ? problem_.edges[p] : motion;
     part.allowed = std::max(tolerance_ * std::min(motion, edge), smallest * edge);
   }
@@ -88,7 +92,9 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
     const Part& part = parts_[p];
     const Sums& sum = sums[p];
     if (!(part.mass > 0)) continue;
-    const double ratio = part.norm > 0 ? std::sqrt(std::max(0.0, sum.norm) / part.norm) : 0;
+    // Where rounding has left the preconditioner indefinite nothing is known of the rest.
+    const double fallen = sum.norm / part.norm;
+    const double ratio = part.norm == 0 ? 0 : fallen >= 0 ? std::sqrt(fallen) : 1;
     const double left = ratio / (1 - std::min(ratio, slowest));
     const double mean = (left * std::sqrt(sum.step) + std::sqrt(sum.cut)) / std::sqrt(part.mass);
     const double local = left * std::sqrt(sum.largest_step) + std::sqrt(sum.largest_cut);
