@@ -141,7 +141,7 @@ const std::vector<Touch> touches = {
     // Silk falls into a mesh with 2 m/s.
     {"funnel",
      120,
-     22,
+     36,
      10,
      {"body.first.velocity=[0, -2, 0]", "body.second.velocity=[0, -2, 0]", "body.third.velocity=[0, -2, 0]"}},
     // Sheets settle on one another, a ball on the uppermost.

@@ -19,7 +19,8 @@ void add(const ContactCounts& counts, RunCosts& costs) {
   costs.shortened += static_cast<std::int64_t>(counts.shortened);
 }
 
-/// A step that missed its tolerance is tried in halves so often before it is taken as it is.
+/// A step that missed its tolerance is tried in halves so often before it is taken as it is; not at all in a
+/// frame where that has been of no use before.
 constexpr int patient_halvings = 4;
 
 class Advance {
@@ -48,7 +49,7 @@ class Advance {
     for (const auto& load : loads)
       if (load) problem.potentials.push_back(load.get());
     StepReport report = scratch_.stepper.step(settings, context, problem, state_.motion);
-    const bool missed = report.made() && !report.converged && halvings < patient_halvings &&
+    const bool missed = report.made() && !report.converged && halvings < patience() &&
                         settings.integrator != Integrator::linearly_implicit_euler;
     if (missed) take_back(before, contact);
     count(report, report.made() && !missed);
@@ -71,6 +72,8 @@ class Advance {
   }
 
  private:
+  int patience() const { return state_.counts.converged_steps < state_.counts.steps ? 0 : patient_halvings; }
+
   /// Undoes a step that was made but is not wanted.
   void take_back(const State& before, const ContactMemory& contact) {
     state_.motion = before;
