@@ -19,7 +19,8 @@
 namespace muslin {
 namespace {
 
-/// Two boxes of springs that turn and fly apart, one a thousand times as heavy, in the middle of a step.
+/// Two boxes of springs that turn, stretch and fly, one a thousand times as heavy, at the end of a step that was
+/// solved loosely.
 class LooseStep : public testing::Test {
  protected:
   void SetUp() override {
@@ -27,7 +28,7 @@ class LooseStep : public testing::Test {
     const std::vector<Vec3> rest = test::rest_positions(lattice);
     size_ = rest.size();
     const auto springs = std::make_shared<SpringEnergy>(build_springs(lattice, Bracing::full), 0.1,
-                                                        std::array<double, 3>{4e4, 1e4, 1e4});
+                                                        std::array<double, 3>{40, 10, 10});
     for (std::size_t part = 0; part < 2; ++part) {
       potentials_.push_back(std::make_unique<RestrictedPotential>(springs, part * size_, size_));
       for (const Vec3& p : rest) from_.push_back(p + Vec3(static_cast<double>(part), 0, 0));
@@ -41,7 +42,7 @@ class LooseStep : public testing::Test {
     problem_.targets = from_;
     problem_.parts = parts_;
     for (const auto& potential : potentials_) problem_.potentials.push_back(potential.get());
-    for (const Vec3& p : from_) prediction_.push_back(p + dt_ * (Vec3(1, 2, 3) + Vec3(4, -5, 6).cross(p)));
+    for (const Vec3& p : from_) prediction_.push_back(p + dt_ * (Vec3(1, 2, 3) + Vec3(4, -5, 6).cross(p) + 20 * Vec3(p.x(), -p.y(), 0)));
     function_.emplace(problem_, prediction_, dt_);
     x_ = test::sum(prediction_, 1, test::random_vectors(from_.size(), 3e-4, 2));
   }
@@ -75,8 +76,8 @@ class LooseStep : public testing::Test {
 };
 
 TEST_F(LooseStep, EndsWithTheMomentaOfEachPart) {
-  EXPECT_GT(imbalance(0).first, 1e-3);
-  EXPECT_GT(imbalance(1).second, 1e-3);
+  EXPECT_GT(imbalance(0).first, 1e-2);
+  EXPECT_GT(imbalance(1).second, 1e-2);
   correct_rigid_motions(problem_, *function_, nullptr, gradient(), x_);
   for (const std::size_t part : {0, 1}) {
     EXPECT_LT(imbalance(part).first, 1e-12) << part;
@@ -93,6 +94,9 @@ TEST_F(LooseStep, IsMovedRigidly) {
 }
 
 TEST_F(LooseStep, DoesNoWorkByWhatIsOutOfBalance) {
+  // It has gone a little too far, and is not quite where it should be besides.
+  x_ = test::sum(from_, 1.005, test::sum(prediction_, -1, from_));
+  x_ = test::sum(x_, 1, test::random_vectors(x_.size(), 1e-6, 2));
   correct_rigid_motions(problem_, *function_, nullptr, gradient(), x_);
   const auto work = [&](std::size_t part) {
     const std::vector<Vec3> g = gradient();

@@ -45,8 +45,8 @@ struct ContactTerm {
 PairGeometry term_geometry(const ContactSurface& surface, const ContactTerm& term, ConstVectors x);
 
 /// All terms that are or may come into range near the points of `distances`: pairs whose gap is less than
-/// PairDistances::ranges_known ranges, rigid bodies being stopped within `dt` [s]. Terms of one vertex follow one another. Pairs without a gap are left
-/// out.
+/// PairDistances::ranges_known ranges, rigid bodies being stopped within `dt` [s]. Terms of one vertex follow
+/// one another. Pairs without a gap are left out.
 std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt);
 
 /// Terms of one vertex that have the same closest points, as one.

@@ -13,7 +13,7 @@ constexpr int lanes = element_lanes;
 using Rest = TriangleRest;
 using Strained = StrainedTriangles;
 
-/// The same in every lane.
+/// Moduli that all lanes share.
 struct Moduli {
   const MembraneEnergy::Constants& constants;
   MUSLIN_INLINE double c11(int) const { return constants.c11; }

@@ -1,4 +1,4 @@
-// A run tells about itself: one row a frame, and where its time went.
+// A row of numbers for each frame of a run, and the time that its parts took.
 #pragma once
 
 #include <cstdint>
@@ -88,7 +88,7 @@ struct FrameCounts {
   }
 };
 
-/// Where the time of a run with contact went, since it was made.
+/// Time that the parts of a run have taken since it was made.
 struct RunCosts {
   double search = 0, limit = 0, contact = 0;  ///< finding candidates, limiting steps, contact potentials [s]
   double linearize = 0, solve = 0;            ///< Hessians and their factors, linear systems [s]
