@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 
 #include "muslin/contact/contact_energy.hpp"
@@ -85,6 +86,8 @@ class VertexTerms {
   void add(std::span<const int> pairs) {
     edges_.clear();
     corners_.clear();
+    edge_places_.clear();
+    corner_places_.clear();
     const std::span<const ContactPair> all = distances_.candidates().pairs();
     bool reduced = false;
     for (const int i : pairs) {
@@ -94,9 +97,9 @@ class VertexTerms {
       for (int k = 0; k < 3; ++k) {
         const bool corner_again =
             (k > 0 && corners[k] == corners[0]) || (k == 2 && corners[2] == corners[1]);
-        if (!corner_again) note(corners_, corners[k], pair);
+        if (!corner_again) note(corners_, corner_places_, corners[k], pair);
         const bool edge_again = (k > 0 && edges[k] == edges[0]) || (k == 2 && edges[2] == edges[1]);
-        if (edges[k] >= 0 && !edge_again) note(edges_, edges[k], pair);
+        if (edges[k] >= 0 && !edge_again) note(edges_, edge_places_, edges[k], pair);
       }
       const double range = range_of(surface_, pair, distances_.points());
       reduced |= range < pair.range;
@@ -111,8 +114,10 @@ class VertexTerms {
     for (const Feature& e : edges_) {
       if (e.triangles == 1) continue;
       const ContactSurface::Edge& ends = surface_.edges()[static_cast<std::size_t>(e.index)];
-      for (Feature& corner : corners_)
-        if (corner.index == ends[0] || corner.index == ends[1]) corner.coefficient -= 1 - e.triangles;
+      for (const int end : ends) {
+        const std::size_t place = place_of(corners_, corner_places_, end);
+        if (place < corners_.size()) corners_[place].coefficient -= 1 - e.triangles;
+      }
       add_feature(e, {v, ends[0], ends[1], -1}, ContactTerm::Kind::vertex_edge, 1 - e.triangles);
     }
     for (const Feature& corner : corners_) {
@@ -143,22 +148,39 @@ class VertexTerms {
     }
   }
 
+  static constexpr std::size_t few = 24;
+  using Places = std::unordered_map<int, std::size_t>;
   struct Feature {
     int index = 0, triangles = 0, coefficient = 0;
     double thickness = 0, range = 0;
   };
 
-  void note(std::vector<Feature>& features, int index, const ContactPair& pair) const {
-    const double range = range_of(surface_, pair, distances_.points());
-    const auto known =
-        std::find_if(features.begin(), features.end(), [&](const Feature& f) { return f.index == index; });
-    if (known == features.end()) {
-      features.push_back({index, 1, 0, pair.thickness, range});
-    } else {
-      ++known->triangles;
-      known->thickness = std::min(known->thickness, pair.thickness);
-      known->range = std::min(known->range, range);
+  /// Of the feature with this index among `features`, their number if it is not. A ball is near to thousands.
+  static std::size_t place_of(const std::vector<Feature>& features, const Places& places, int index) {
+    if (features.size() > few) {
+      const auto known = places.find(index);
+      return known == places.end() ? features.size() : known->second;
     }
+    return static_cast<std::size_t>(std::find_if(features.begin(), features.end(),
+                                                 [&](const Feature& f) { return f.index == index; }) -
+                                    features.begin());
+  }
+
+  void note(std::vector<Feature>& features, Places& places, int index, const ContactPair& pair) const {
+    const double range = range_of(surface_, pair, distances_.points());
+    const std::size_t place = place_of(features, places, index);
+    if (place < features.size()) {
+      Feature& known = features[place];
+      ++known.triangles;
+      known.thickness = std::min(known.thickness, pair.thickness);
+      known.range = std::min(known.range, range);
+      return;
+    }
+    features.push_back({index, 1, 0, pair.thickness, range});
+    if (features.size() < few + 1) return;
+    if (features.size() == few + 1)
+      for (std::size_t i = 0; i < few; ++i) places.emplace(features[i].index, i);
+    places.emplace(index, place);
   }
 
   void add_feature(const Feature& feature, const std::array<int, 4>& points, ContactTerm::Kind kind,
@@ -181,6 +203,7 @@ class VertexTerms {
   double dt_;
   std::vector<ContactTerm>& out_;
   std::vector<Feature> edges_, corners_;
+  Places edge_places_, corner_places_;  ///< of features, where there are more than a few
 };
 
 /// Leaves out points without weight and names each point once.
