@@ -92,30 +92,48 @@ TEST_P(FarWays, NeverMakeCrumpledClothCross) {
   EXPECT_GT(guard.counts().searches, guard.counts().limits);
 }
 
-TEST(RigidWays, AreLeftWholeAwayFromOthersAndLimitedNearThem) {
-  // Folds of the cloth are close to one another, so that the same way, vertex by vertex, would be cut.
+/// A motion of the scene's cloth as one rigid group.
+struct RigidWay {
+  std::vector<std::uint8_t> held;
+  std::vector<int> groups;
+  std::vector<Vec3> d;
+
+  RigidWay(const Scene& scene, const Vec3& along)
+      : held(scene.q.size(), 1), groups(scene.q.size(), -1), d(scene.q.size(), Vec3::Zero()) {
+    const Eigen::AngleAxisd turn(1e-3, Vec3::UnitY());
+    for (std::size_t v = 0; v < scene.cloth_size; ++v) {
+      held[v] = 0;
+      groups[v] = 0;
+      d[v] = turn * scene.q[v] - scene.q[v] + along;
+    }
+  }
+};
+
+TEST(RigidWays, AreLeftWholeAwayFromOthers) {
+  Scene scene(22);
+  for (std::size_t v = 0; v < scene.cloth_size; ++v) scene.q[v].y() += 2;
+  ContactMemory memory;
+  ContactGuard guard(scene.model, memory);
+  const RigidWay up(scene, Vec3(0, 0.3, 0));  // six edges
+  guard.begin(scene.q, up.held);
+  std::vector<Vec3> alone = up.d, together = up.d;
+  guard.limit(scene.q, alone);
+  EXPECT_NE(alone, up.d);
+  guard.limit(scene.q, together, up.groups);
+  EXPECT_EQ(together, up.d);
+}
+
+TEST(RigidWays, AreLimitedNearOthers) {
   Scene scene(22);
   ContactMemory memory;
   ContactGuard guard(scene.model, memory);
-  std::vector<std::uint8_t> held(scene.q.size(), 0);
-  std::vector<int> groups(scene.q.size(), -1);
-  std::fill(held.begin() + static_cast<std::ptrdiff_t>(scene.cloth_size), held.end(), 1);
-  std::fill(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(scene.cloth_size), 0);
-  const auto way = [&](const Vec3& along) {
-    std::vector<Vec3> d(scene.q.size(), Vec3::Zero());
-    const Eigen::AngleAxisd turn(1e-3, Vec3::UnitY());
-    for (std::size_t v = 0; v < scene.cloth_size; ++v) d[v] = turn * scene.q[v] - scene.q[v] + along;
-    return d;
-  };
-  guard.begin(scene.q, held);
-  const std::vector<Vec3> up = way(Vec3(0, 0.01, 0));
-  std::vector<Vec3> d = up;
-  guard.limit(scene.q, d, groups);
-  EXPECT_EQ(d, up);
-  // The sheet is 5 cm beneath.
-  d = way(Vec3(0, -0.08, 0));
-  guard.limit(scene.q, d, groups);
-  for (std::size_t v = 0; v < d.size(); ++v) scene.q[v] += d[v];
+  RigidWay down(scene, Vec3(0, -0.08, 0));  // the sheet is 5 cm beneath
+  guard.begin(scene.q, down.held);
+  Scene crossed = scene;
+  for (std::size_t v = 0; v < down.d.size(); ++v) crossed.q[v] += down.d[v];
+  EXPECT_TRUE(crossed.crosses());
+  guard.limit(scene.q, down.d, down.groups);
+  for (std::size_t v = 0; v < down.d.size(); ++v) scene.q[v] += down.d[v];
   EXPECT_FALSE(scene.crosses());
 }
 

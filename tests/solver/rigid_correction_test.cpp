@@ -51,7 +51,7 @@ class LooseStep : public testing::Test {
     function_->gradient(x_, g);
     return g;
   }
-  /// Of one part: Σ g and Σ r × g, as shares of the sums of their lengths.
+  /// Returns |Σ g| and |Σ r × g| of one part, as shares of the sums of the lengths.
   std::pair<double, double> imbalance(std::size_t part) const {
     const std::vector<Vec3> g = gradient();
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();

@@ -50,7 +50,7 @@ struct Volume {
     }
   }
 
-  /// Of the gradients, where the corners move.
+  /// The change of the gradients when the corners move.
   Corners change(const Corners& moves) const {
     Corners result;
     result.fill(Vec3::Zero());

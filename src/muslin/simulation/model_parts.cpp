@@ -10,7 +10,7 @@ namespace {
 /// The linear solver works in single precision while ‖block‖ dt² / mass is below 3e5. In units of
 /// BodyStatistics::stable_step, which is 2/√ratio or less, that is a step of this length.
 constexpr double stable_steps = 150;
-/// The same of rigid bodies, as stiff as they are [s].
+/// The longest step of a rigid body in single precision [s]; its stiffness is that of build_materials.cpp.
 constexpr double longest_rigid = 1.0 / 16;
 
 class Joined {

@@ -72,7 +72,8 @@ class Newton {
     report_.residual = imbalance_.largest;
     report_.worst_vertex = imbalance_.vertex;
     report_.held_back = held_back_;
-    if (report_.made() && report_.newton_iterations > 0) correct_work();
+    if (report_.made() && report_.newton_iterations > 0)
+      correct_work(problem_, full(), guard_, state_.positions, g_, x_);
     if (report_.made()) correct_rigid_motions();
     return report_;
   }
@@ -126,20 +127,10 @@ class Newton {
     return true;
   }
 
-  void correct_work() {
-    std::copy(x_.begin(), x_.end(), there_.begin());
-    muslin::correct_work(problem_, full(), guard_, state_.positions, g_, x_);
-    keep_if_allowed();
-  }
-
+  /// Unless a potential does not let it.
   void correct_rigid_motions() {
     std::copy(x_.begin(), x_.end(), there_.begin());
     muslin::correct_rigid_motions(problem_, function_, guard_, g_, x_);
-    keep_if_allowed();
-  }
-
-  /// Goes back to there_ if a potential does not let x_ be reached.
-  void keep_if_allowed() {
     for_each_vertex(count_, [&](std::size_t v) { d_[v] = x_[v] - there_[v]; });
     if (!(function_.max_step(there_, d_) > 1)) std::copy(there_.begin(), there_.end(), x_.begin());
   }

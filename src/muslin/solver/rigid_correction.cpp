@@ -15,7 +15,7 @@ constexpr int turns = 3;            // Newton iterations for the rotation
 /// Work is corrected by no more than this share of the motion: where it would take more, as in what has come
 /// to rest, the motion is no more than what is left of errors. And not where energy is hardly convex.
 constexpr double most_share = 0.05, least_curvature = 0.1;
-/// What moves by less than this share of what loads could move it by is at rest.
+/// A group is at rest if it moves by less than this share of what loads could move it by.
 constexpr double resting = 0.1;
 
 /// Parts that move together, found by joining pairs.
@@ -92,7 +92,7 @@ struct Group {
   Mat3 rotation = Mat3::Identity();
 };
 
-/// How a group has moved in a step, and what that did against what is out of balance.
+/// The motion of a group in a step, and the work that the residual has done on it.
 struct MovingGroup {
   double mass = 0;
   bool held = false, outside = false;  ///< has held vertices; touches what is not of it
@@ -101,7 +101,7 @@ struct MovingGroup {
   double work = 0, curvature = 0, inertial = 0;
   double falls = 0;  ///< how far loads alone move it in a step [m]
 
-  /// Of its motion that is added to it.
+  /// The share of its motion that is to be added to it.
   double share() const {
     if (!(curvature >= least_curvature * inertial) || curvature == 0) return 0;
     if (inertial < mass * resting * resting * falls * falls) return 0;
@@ -263,8 +263,13 @@ void correct_work(const StepProblem& problem, const IncrementalPotential& functi
     if (!s[v].allFinite() || !hs[v].allFinite()) return;
     farthest = std::max(farthest, s[v].norm());
   }
-  if (farthest == 0) return;
-  if (guard && farthest > guard->slack()) guard->limit(x, s);
+  if (farthest == 0 || !(function.max_step(x, s) > 1)) return;
+  if (guard && farthest > guard->slack()) {
+    // A part of it alone would change momenta.
+    std::vector<Vec3> limited = s;
+    guard->limit(x, limited);
+    if (limited != s) return;
+  }
   for (std::size_t v = 0; v < count; ++v) {
     x[v] += s[v];
     g[v] += hs[v];

@@ -1,12 +1,11 @@
-// What a step conserves, exactly, however loosely it was solved.
+// Corrections at the end of a step that make momenta and energy right however loosely it was solved.
 //
 // Momenta. Forces within bodies and between them sum to zero, and so do their torques. The momenta that a step
 // ends with are therefore right if and only if Σ g = 0 and Σ r × g = 0, g the gradient of the incremental
 // potential: six equations for each group of bodies that touch, which six rigid motions of the group solve
 // while no distance within it changes.
 //
-// Energy. What is left out of balance does the work gᵀ(x − x_n)/dt² on the step, which is energy out of
-// nothing. It is zero if the group goes a little more or less far along its own motion: one equation, one
+// Energy. The residual does the work gᵀ(x − x_n)/dt² in the step, which is energy out of nothing. It is zero if the group goes a little more or less far along its own motion: one equation, one
 // unknown. docs/theory/solver.md.
 #pragma once
 
@@ -24,9 +23,9 @@ namespace muslin {
 void correct_rigid_motions(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
                            ConstVectors g, Vectors x);
 
-/// Moves every group along x − from, less its rigid motion if it is free, so far that what is left out of
-/// balance does no work in the step. `function` is everything that acts, contact included, and g its gradient
-/// at x; both are brought to the new x.
+/// Moves every group along x − from, less its rigid motion if it is free, so far that the residual does no work
+/// in the step. `function` is everything that acts, contact included, and g its gradient at x; both are brought
+/// to the new x, or left as they are if the guard or a potential does not allow all of the motion.
 void correct_work(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
                   ConstVectors from, Vectors g, Vectors x);
 

@@ -13,7 +13,7 @@ constexpr double smallest = 1e-14;
 /// Work of the residual, as a share of what moves, over the tolerance: what correct_work can take out.
 constexpr double leak_share = 0.01;
 constexpr double slowest = 0.9;
-/// What lies on something presses contact by what it would fall in about this time [s], however long steps are.
+/// A body at rest presses contact by about what it would fall in this time [s], however long steps are.
 constexpr double stopping_time = 1.0 / 240;
 
 }  // namespace
@@ -92,7 +92,7 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
     const Part& part = parts_[p];
     const Sums& sum = sums[p];
     if (!(part.mass > 0)) continue;
-    // Where rounding has left the preconditioner indefinite nothing is known of the rest.
+    // Rounding may leave the preconditioner indefinite. Then the ratio says nothing, and 1 is safe.
     const double fallen = sum.norm / part.norm;
     const double ratio = part.norm == 0 ? 0 : fallen >= 0 ? std::sqrt(fallen) : 1;
     const double left = ratio / (1 - std::min(ratio, slowest));
