@@ -48,7 +48,7 @@ class ContactPotential : public Potential {
   /// coefficient is negative or sizes do not fit.
   ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
                    Friction friction, ConstVectors start, std::span<const PairSlip> slips = {});
-  /// The same with the friction of another potential of this step, lagged where that has it.
+  /// Takes normal forces, closest points and slips of friction from another potential of the same step.
   ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
                    const ContactPotential& friction);
 

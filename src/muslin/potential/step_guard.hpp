@@ -33,7 +33,7 @@ class StepGuard {
   /// Advances x by d in collision-free substeps, however long d is.
   virtual void advance(Vectors x, ConstVectors d) = 0;
 
-  /// Where friction takes its normal forces and closest points.
+  /// Normal forces and closest points of friction: those at x, or those of the last potential of this step.
   enum class Friction { anew, kept };
   /// The energy of contact near x: to be asked for anew at every iterate. Friction is lagged at x, or kept as
   /// the last potential of this step has it. Valid until the next call.

@@ -78,7 +78,8 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
   const std::size_t count = state.positions.size();
   const double dt = context.dt;
   StepProblem problem = given;
-  if (problem.guard) problem.potentials.push_back(&problem.guard->potential(state.positions, StepGuard::Friction::anew));
+  if (problem.guard)
+    problem.potentials.push_back(&problem.guard->potential(state.positions, StepGuard::Friction::anew));
   const IncrementalPotential function(problem, context.inertial_prediction, dt);
   std::vector<Vec3> coast(count), rhs(count), s(count), residual(count), g(count);
   for_each_vertex(count, [&](std::size_t v) {
