@@ -2,8 +2,12 @@
 // stays.
 #include "muslin/contact/contact_potential.hpp"
 
+#include <array>
 #include <cmath>
 #include <random>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "support/cloth_grid.hpp"
 #include "support/distances_at.hpp"
@@ -241,6 +245,46 @@ TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
   for (const Vec3& over :
        {Vec3(0.23, 0.001, 0.22), Vec3(0.2, 0.001, 0.25), Vec3(0.2, 0.001, 0.2), Vec3(0.25, 0.001, 0.25)})
     EXPECT_NEAR(scene.force(over).y(), scene.alone, 1e-9) << over.transpose();
+}
+
+TEST(MergedContacts, OfBallsNearToManyTrianglesNameEachPlaceOnceAndLoseNothing) {
+  // Two balls over cloth of millimetres: more contacts of one centre than are searched one by one.
+  constexpr double radius = 0.25, range = 0.004;
+  constexpr int side = 24, sheet_points = side * side;
+  const test::ClothGrid sheet(side, side, 0.002);
+  std::vector<Vec3> x = sheet.positions;
+  x.push_back(Vec3(0.01, radius + 0.001, 0.012));
+  x.push_back(Vec3(0.035, radius + 0.002, 0.03));
+  std::vector<Vec3i> triangles = sheet.triangles;
+  std::vector<int> bodies(sheet_points, 0);
+  for (int ball = 0; ball < 2; ++ball) {
+    triangles.push_back(Vec3i::Constant(sheet_points + ball));
+    bodies.push_back(1 + ball);
+  }
+  const auto surface = std::make_shared<ContactSurface>(
+      triangles, bodies,
+      std::vector<ContactBody>{{0, false, true, INFINITY}, {radius, false, false, 1000}, {radius, false, false, 500}});
+  ContactCandidates candidates(surface, x, range);
+  candidates.update(x, x, range / 2);
+  const PairDistances distances = test::distances_at(candidates, x);
+  const std::vector<ContactTerm> terms = contact_terms(distances, 1.0 / 240);
+  const std::vector<MergedContact> merged = merged_contacts(*surface, terms, x);
+  for (int ball = 0; ball < 2; ++ball) {
+    Vec3 expected = Vec3::Zero(), sum = expected;
+    for (const ContactTerm& term : terms) {
+      if (term.points[0] != sheet_points + ball) continue;
+      const PairGeometry at = term_geometry(*surface, term, x);
+      expected += term.stiffness * contact_law(at.distance - term.thickness, term.range).slope * at.normal;
+    }
+    std::set<std::pair<int, std::array<int, 4>>> places;
+    for (const MergedContact& contact : merged) {
+      if (contact.points[0] != sheet_points + ball) continue;
+      EXPECT_TRUE(places.insert({contact.first_size, contact.points}).second) << "named twice";
+      sum += contact.slope * contact.normal;
+    }
+    EXPECT_GT(places.size(), 50U);
+    EXPECT_LT((sum - expected).norm(), 1e-9 * expected.norm());
+  }
 }
 
 TEST(ContactPotential, CountsItAboutOnceBesideEdgesAndCorners) {

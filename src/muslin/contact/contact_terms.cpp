@@ -75,6 +75,9 @@ double range_of(const ContactSurface& surface, const ContactPair& pair, ConstVec
   return sagitta < round_sagitta * pair.range ? 0 : round_range * pair.range;
 }
 
+/// Lists up to this long are searched one by one.
+constexpr std::size_t few = 24;
+
 bool is_near(double gap, double range) { return gap > 0 && gap < PairDistances::ranges_known * range; }
 
 /// The terms of one vertex against the triangles of `pairs`.
@@ -148,7 +151,6 @@ class VertexTerms {
     }
   }
 
-  static constexpr std::size_t few = 24;
   using Places = std::unordered_map<int, std::size_t>;
   struct Feature {
     int index = 0, triangles = 0, coefficient = 0;
@@ -236,6 +238,51 @@ MergedContact reduced(const ContactTerm& term, const PairGeometry& at) {
   take(term.first_size(), 4);
   return contact;
 }
+
+/// Contacts of the same points among those of one vertex, which follow one another. A ball has thousands.
+class SameContacts {
+ public:
+  explicit SameContacts(std::vector<MergedContact>& all) : all_(all) {}
+
+  MergedContact* find(const MergedContact& contact) {
+    if (!all_.empty() && all_.back().points[0] != contact.points[0]) {
+      first_ = all_.size();
+      places_.clear();
+    }
+    if (!places_.empty()) {
+      const auto known = places_.find({contact.first_size, contact.points});
+      return known == places_.end() ? nullptr : &all_[known->second];
+    }
+    for (std::size_t i = first_; i < all_.size(); ++i)
+      if (all_[i].first_size == contact.first_size && all_[i].points == contact.points) return &all_[i];
+    return nullptr;
+  }
+
+  void add(const MergedContact& contact) {
+    all_.push_back(contact);
+    if (all_.size() - first_ <= few) return;
+    for (std::size_t i = places_.empty() ? first_ : all_.size() - 1; i < all_.size(); ++i)
+      places_.emplace(Points{all_[i].first_size, all_[i].points}, i);
+  }
+
+ private:
+  struct Points {
+    int first_size;
+    std::array<int, 4> points;
+    bool operator==(const Points&) const = default;
+  };
+  struct Hash {
+    std::size_t operator()(const Points& p) const {
+      std::uint64_t hash = static_cast<std::uint64_t>(p.first_size);
+      for (const int point : p.points) hash = (hash ^ static_cast<std::uint32_t>(point)) * 0x9e3779b97f4a7c15;
+      return hash ^ hash >> 32;
+    }
+  };
+
+  std::vector<MergedContact>& all_;
+  std::size_t first_ = 0;  ///< of the vertex
+  std::unordered_map<Points, std::size_t, Hash> places_;  ///< where there are more than a few
+};
 
 }  // namespace
 
@@ -346,19 +393,13 @@ std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::s
       part.push_back(contact);
     }
   });
-  // Terms of one vertex follow one another.
   std::vector<MergedContact> merged;
-  std::size_t group = 0;
+  SameContacts same_contacts(merged);
   for (const std::vector<MergedContact>& part : parts) {
     for (const MergedContact& contact : part) {
-      if (!merged.empty() && merged.back().points[0] != contact.points[0]) group = merged.size();
-      const auto same = std::find_if(merged.begin() + static_cast<std::ptrdiff_t>(group), merged.end(),
-                                     [&](const MergedContact& known) {
-                                       return known.first_size == contact.first_size &&
-                                              known.points == contact.points;
-                                     });
-      if (same == merged.end()) {
-        merged.push_back(contact);
+      MergedContact* const same = same_contacts.find(contact);
+      if (!same) {
+        same_contacts.add(contact);
         continue;
       }
       same->slope += contact.slope;
