@@ -7,13 +7,12 @@
 namespace muslin {
 namespace {
 
-/// a dt² as a share of the edge; parts have at least so many edges.
-constexpr double acceleration_share = 0.0175, draft_longer = 4;
-constexpr double least_edges = 50;
+/// a dt² as a share of the size of a part, whatever its resolution.
+constexpr double acceleration_share = 3.5e-4, draft_longer = 4;
 /// Edges that a part goes in a step relative to another.
 constexpr double edges_past = 4;
 /// Iterations from which on a step is hard, and up to which it is easy.
-constexpr int hard = 14, easy = 7;
+constexpr int hard = 24, easy = 12;
 constexpr int most_harder = 2;
 /// What is squeezed by what moves anyway would ask for shorter steps without end.
 constexpr int finest = 6;
@@ -47,9 +46,9 @@ int StepControl::choose(const ModelParts& parts, std::span<const double> acceler
   for (std::size_t p = 0; p < motions.size(); ++p) {
     const double loads = p < accelerations.size() ? accelerations[p] : 0;
     const double a = moving ? std::sqrt(motions[p].square / motions[p].mass) / state.previous_dt : loads;
-    const double edge = std::min(parts.edges[p], parts.sizes[p] > 0 ? parts.sizes[p] / least_edges : 1.0);
+    const double size = parts.sizes[p] > 0 ? parts.sizes[p] : parts.edges[p];
     shortest = std::min(shortest, parts.longest_steps[p]);
-    if (a > 0) shortest = std::min(shortest, std::sqrt(share * edge / a));
+    if (a > 0) shortest = std::min(shortest, std::sqrt(share * size / a));
     if (relative > 0) shortest = std::min(shortest, edges_past * parts.edges[p] / relative);
   }
   int wanted = static_cast<int>(std::ceil(std::log2(frame_time / shortest) - 1e-9));

@@ -1,11 +1,11 @@
 // The length of steps that the program chooses: frames halved as often as the motion needs.
 //
 // A step of length dt moves a part by ½ a dt² beyond what its velocity says, a the acceleration of the last
-// step (root mean square over its masses). That is kept to a small share of its edges, so that contact and
-// wrinkles see motion in small pieces and the damping of the integrator stays small; what rests takes one
-// step a frame, as far as single precision still tells masses from stiffnesses. Two parts that meet go no more
-// than a few edges past each other in a step. Where a step took many iterations or missed its tolerance the
-// next ones are shorter, and longer again once they are easy.
+// step (root mean square over its masses). That is kept to a small share of its size, so that the damping of
+// the integrator stays small at every resolution alike; what rests takes one step a frame, as far as single
+// precision still tells masses from stiffnesses. Two parts that meet go no more than a few edges past each
+// other in a step. Where a step took many iterations or missed its tolerance the next ones are shorter, and
+// longer again once they are easy.
 // docs/theory/solver.md.
 #pragma once
 
