@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/linearized_product.hpp"
 #include "support/sheet.hpp"
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 namespace muslin {
@@ -117,6 +119,101 @@ TEST(MembraneEnergy, ProjectedStiffnessIsPositiveAndExactUnderTension) {
     }
     EXPECT_EQ(indefinite, stretch < 1);
   }
+}
+
+/// M + scale K as the inner solver has it, for a sheet that is not the first body.
+Eigen::MatrixXd matrix(const MembraneEnergy& energy, const std::vector<double>& masses, double scale,
+                       const std::vector<Vec3>& x) {
+  constexpr std::size_t others = 3;
+  std::vector<double> all(others, 1e6);
+  all.insert(all.end(), masses.begin(), masses.end());
+  const std::vector<std::uint8_t> fixed(all.size(), 0);
+  Linearization h;
+  h.reset(all, fixed, scale);
+  energy.linearize(x, h, others);
+  h.finish();
+  const auto n = static_cast<Eigen::Index>(3 * x.size());
+  Eigen::MatrixXd result(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    std::vector<Vec3> unit(all.size(), Vec3::Zero());
+    unit[others + static_cast<std::size_t>(i / 3)][i % 3] = 1;
+    const std::vector<Vec3> column = test::product(h, unit);
+    for (Eigen::Index j = 0; j < n; ++j) result(j, i) = column[others + static_cast<std::size_t>(j / 3)][j % 3];
+  }
+  return result;
+}
+
+/// The least eigenvalue of h beside the masses.
+double least_share(const Eigen::MatrixXd& h, const std::vector<double>& masses) {
+  Eigen::VectorXd m(h.rows());
+  for (Eigen::Index i = 0; i < m.size(); ++i) m[i] = masses[static_cast<std::size_t>(i / 3)];
+  const Eigen::VectorXd root = m.cwiseSqrt().cwiseInverse();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.asDiagonal() * h * root.asDiagonal()).eigenvalues()[0];
+}
+
+TEST(MembraneEnergy, MatrixIsTheExactHessianWhereMassesHoldWhatBuckles) {
+  const Mesh mesh = test::flat_sheet(6, 5, 0.6, 0.5);
+  const Shell shell = build_shell(mesh, mesh.positions, along_x);
+  const MembraneEnergy energy(shell, cloth, block_pattern(shell));
+  const std::vector<Vec3> x = test::sum(mapped(mesh.positions, 0.98 * Mat3::Identity()), 1,
+                                        test::random_vectors(mesh.vertex_count(), 1e-3, 5));
+  const double scale = 1e-5, mass = 0.1;
+  const std::vector<double> masses(x.size(), mass);
+  const Eigen::MatrixXd h = matrix(energy, masses, scale, x);
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    std::vector<Vec3> p = test::random_vectors(x.size(), 1, seed);
+    for (Vec3& d : p) d = Vec3(0.01 * d.x(), d.y(), 0.01 * d.z());
+    std::vector<Vec3> exact(x.size(), Vec3::Zero()), projected = exact, whole = exact;
+    energy.add_stiffness_product(Stiffness::exact, x, p, exact);
+    energy.add_stiffness_product(Stiffness::projected, x, p, projected);
+    Eigen::VectorXd q(h.rows());
+    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = p[static_cast<std::size_t>(i / 3)][i % 3];
+    const Eigen::VectorXd hq = h * q;
+    for (Eigen::Index i = 0; i < q.size(); ++i) whole[static_cast<std::size_t>(i / 3)][i % 3] = hq[i];
+    const double error = test::norm(test::sum(test::sum(whole, -mass, p), -scale, exact));
+    const double buckling = scale * test::norm(test::sum(exact, -1, projected));
+    EXPECT_LT(error, 1e-3 * buckling);
+  }
+}
+
+TEST(MembraneEnergy, MatrixAndMassesAreAtLeastATenthOfTheMasses) {
+  // Sheets of unequal masses, pressed little and much; every direction by its eigenvalue.
+  const Mesh mesh = test::flat_sheet(4, 3, 0.4, 0.3);
+  const Shell shell = build_shell(mesh, mesh.positions, along_x);
+  const MembraneEnergy energy(shell, cloth, block_pattern(shell));
+  for (const double stretch : {0.99, 0.9, 0.6}) {
+    const std::vector<Vec3> x = test::sum(mapped(mesh.positions, stretch * Mat3::Identity()), 1,
+                                          test::random_vectors(mesh.vertex_count(), 0.01, 7));
+    for (const double mass : {1e-3, 1e-2}) {
+      std::vector<double> masses(x.size(), mass);
+      for (std::size_t v = 0; v < masses.size(); ++v) masses[v] *= 1 + static_cast<double>(v % 3);
+      const double least = least_share(matrix(energy, masses, 1e-4, x), masses);
+      EXPECT_GE(least, 0.1 - 1e-3) << stretch << ' ' << mass;
+      EXPECT_LT(least, 0.9) << "some of what buckles is in it";
+    }
+  }
+}
+
+TEST(MembraneEnergy, OneTrianglePressedOneWayTakesNineTenthsOfTheMasses) {
+  Mesh mesh;
+  mesh.positions = {Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0, 0.1)};
+  mesh.face_offsets = {0, 3};
+  mesh.face_vertices = {0, 1, 2};
+  const Shell shell = build_shell(mesh, mesh.positions, along_x);
+  const MembraneEnergy energy(shell, {1000, 1000, 400, 0}, block_pattern(shell));
+  std::vector<Vec3> x = mesh.positions;
+  x[1].x() = 0.08;
+  const std::vector<double> masses(3, 1e-3);
+  EXPECT_NEAR(least_share(matrix(energy, masses, 1e-4, x), masses), 0.1, 1e-4);
+}
+
+TEST(MembraneEnergy, MatrixIsProjectedWhereItIsTooStiffForFloatToHoldMasses) {
+  const Mesh mesh = test::flat_sheet(4, 3, 0.4, 0.3);
+  const Shell shell = build_shell(mesh, mesh.positions, along_x);
+  const MembraneEnergy energy(shell, cloth, block_pattern(shell));
+  const std::vector<Vec3> x = mapped(mesh.positions, 0.9 * Mat3::Identity());
+  const std::vector<double> masses(x.size(), 1e-6);
+  EXPECT_GE(least_share(matrix(energy, masses, 1e-4, x), masses), 0.9);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST(ShellDamping, IsRayleighs) {
   }
 }
 
-TEST(ShellEnergy, MatrixIsTheProjectedStiffness) {
+TEST(ShellEnergy, MatrixIsTheProjectedStiffnessWhereMassesHoldNothing) {
   const Mesh mesh = test::flat_sheet(30, 25, 0.6, 0.5, 0.2);
   const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
   const auto pattern = block_pattern(shell);
@@ -85,7 +85,7 @@ TEST(ShellEnergy, MatrixIsTheProjectedStiffness) {
   const HingeBending bending(shell, {1e-3, 3e-4, 5e-4}, pattern);
   const std::vector<Vec3> x =
       test::sum(test::rolled(mesh.positions, 3), 1, test::random_vectors(mesh.vertex_count(), 0.004, 5));
-  const std::vector<double> masses(x.size(), 0.01);
+  const std::vector<double> masses(x.size(), 1e-6);
   const std::vector<std::uint8_t> fixed(x.size(), 0);
   const std::vector<Vec3> p = test::random_vectors(x.size(), 1, 6);
   for (const auto& energies :
@@ -100,7 +100,7 @@ TEST(ShellEnergy, MatrixIsTheProjectedStiffness) {
       energy->add_stiffness_product(Stiffness::projected, x, p, expected);
     double difference = 0, norm = 0;
     for (std::size_t v = 0; v < x.size(); ++v) {
-      expected[v] = 0.5 * expected[v] + 0.01 * p[v];
+      expected[v] = 0.5 * expected[v] + 1e-6 * p[v];
       difference += (expected[v] - product[v]).squaredNorm();
       norm += expected[v].squaredNorm();
     }

@@ -2,6 +2,7 @@
 // states.
 #include "muslin/potential/relative_stiffness.hpp"
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -59,6 +60,38 @@ TEST(RelativeStiffness, MultipliesAsTheSumOfItsTerms) {
       EXPECT_NEAR(y[static_cast<std::size_t>(Terms::first + v)][k] - static_cast<float>(k + 1),
                   expected[3 * v + k], 1e-4);
   for (std::size_t v = 0; v < Terms::first; ++v) EXPECT_EQ(y[v][0], 1) << "beyond the body";
+}
+
+TEST(RelativeStiffness, DiagonalBlocksAreThoseOfTheSumUpToABound) {
+  Terms terms(60);
+  constexpr std::size_t count = Terms::vertices;
+  std::vector<float> identity(count, 1.0F);
+  for (std::size_t v = 0; v < count; v += 4) identity[v] = 0.1F;  // lighter: their blocks are too stiff
+  constexpr float most = 20;
+  FloatVectors upper, lower;
+  upper.resize(count), lower.resize(count);
+  const Floats u = upper.data(), l = lower.data();
+  for (float* each : {u.x, u.y, u.z, l.x, l.y, l.z}) std::fill_n(each, count, 0.0F);
+  std::vector<std::uint8_t> fixed(count, 0);
+  const double stiffest = terms.stiffness.add_diagonal(identity.data(), fixed.data(), most, u, l);
+  double largest = 0;
+  bool scaled = false, whole = false;
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto at = static_cast<Eigen::Index>(3 * v);
+    Mat3 block = terms.dense.block<3, 3>(at, at);
+    const double bound = static_cast<double>(most * identity[v]);
+    largest = std::max(largest, block.trace() / static_cast<double>(identity[v]));
+    if (block.trace() > 0) (block.trace() > bound ? scaled : whole) = true;
+    if (block.trace() > bound) block *= bound / block.trace();
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR((k == 0 ? u.x : k == 1 ? u.y : u.z)[v], block(0, k), 1e-4);
+    EXPECT_NEAR(l.x[v], block(1, 1), 1e-4);
+    EXPECT_NEAR(l.y[v], block(1, 2), 1e-4);
+    EXPECT_NEAR(l.z[v], block(2, 2), 1e-4);
+  }
+  EXPECT_TRUE(scaled && whole);
+  EXPECT_NEAR(stiffest / largest, 1, 1e-5);
+  fixed.assign(count, 1);
+  EXPECT_EQ(terms.stiffness.add_diagonal(identity.data(), fixed.data(), most, u, l), 0);
 }
 
 TEST(RelativeStiffness, IsEmptyAfterReset) {

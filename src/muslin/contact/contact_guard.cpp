@@ -7,6 +7,7 @@
 #include "muslin/contact/intersections.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/stopwatch.hpp"
+#include "muslin/potential/stopping_time.hpp"
 
 namespace muslin {
 namespace {
@@ -32,13 +33,11 @@ constexpr double floor_share = 0.01;
 /// Motions below this share of that floor need no limit.
 constexpr double slack_share = 1e-4;
 /// The share of gaps that an iteration keeps. Iterations go far; one that ends with some edges at a
-/// thousandth of the range meets forces there that nothing else comes near, and hardly leaves: what moves
-/// along at such gaps is stopped.
-constexpr double kept_share = 0.1;
+/// thousandth of the range meets forces there that nothing else comes near, and comes back by half of the gap
+/// in an iteration: what moves along at such gaps is stopped.
+constexpr double kept_share = 0.3;
 /// Groups that move less than this share of the gap between them are not limited.
 constexpr double safe_share = 0.5;
-/// In which contact stops the mass of a rigid body [s]; whatever the steps, so that their changes do no work.
-constexpr double stopping_time = 1.0 / 240;
 /// Slip at which friction is full, as a share of the range; whatever the steps, so that what rests stays where
 /// it is when they change.
 constexpr double stick_share = 0.005;

@@ -25,13 +25,14 @@
 #include "muslin/contact/contact_hessian.hpp"
 #include "muslin/contact/surface_map.hpp"
 #include "muslin/potential/potential.hpp"
+#include "muslin/potential/stopping_time.hpp"
 
 namespace muslin {
 
 struct Friction {
   double coefficient = 0;      ///< Coulomb's μ of bodies without one of their own
   double stick_length = 1e-5;  ///< slip at which friction is full [m]
-  double dt = 1.0 / 240;       ///< in which contact stops rigid bodies [s]
+  double dt = stopping_time;   ///< in which contact stops rigid bodies [s]
 };
 
 /// The slip of a pair that sticks or slides, by ContactPair::key(); part of the moving state.

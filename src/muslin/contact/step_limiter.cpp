@@ -19,7 +19,9 @@ constexpr double least_weight = 0.01;
 /// The share of a gap, or of the contact distance if that is less, that deflection leaves, and, near the
 /// floor, how many floors. Less would press surfaces that meet at speed so close that their contact becomes
 /// too stiff for few iterations; but what pushes others along keyframes needs room to go on.
-constexpr double kept_share = 0.5, kept_before_pushing = 0.2, kept_floors = 1.5;
+constexpr double kept_deflected = 0.5, kept_before_pushing = 0.2, kept_floors = 1.5;
+/// Of what every pair keeps, how much more deflection leaves.
+constexpr double kept_more = 1.1;
 /// Rounds of deflection at most: vertices against triangles, edges against edges, then both. Each carries a
 /// push on by a layer.
 constexpr int deflections = 40;
@@ -166,8 +168,8 @@ struct StepLimiter::Work {
     const bool b_yields = !is_prescribed(pair.points[static_cast<std::size_t>(size_a)]);
     const bool pushes = (!a_yields && approach_a > 0) || (!b_yields && approach_b > 0);
     const double gap = before - pair.thickness;
-    const double kept = std::max(kept_floors * limits.gap_floor,
-                                 (pushes ? kept_before_pushing : kept_share) * std::min(gap, pair.range));
+    const double share = std::max(pushes ? kept_before_pushing : kept_deflected, kept_more * limits.kept_share);
+    const double kept = std::max(kept_floors * limits.gap_floor, share * std::min(gap, pair.range));
     const double slack = std::max(0.0, gap - kept);
     if (approach_a + approach_b <= slack) return;
     // Each side may use the slack in proportion to its approach; one that recedes leaves its way to the

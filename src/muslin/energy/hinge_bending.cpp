@@ -301,7 +301,7 @@ void HingeBending::add_stiffness_blocks(Stiffness, ConstVectors x, std::span<Mat
 }
 
 void HingeBending::add_stiffness_matrix(Stiffness, ConstVectors x, double scale,
-                                        SymmetricMatrix& matrix) const {
+                                        std::span<const double> /*masses*/, SymmetricMatrix& matrix) const {
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<4>::Slab& slab) {
     Batch<4> corners, g;
     slabs_.gather(first, count, x, corners);

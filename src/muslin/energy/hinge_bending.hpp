@@ -42,7 +42,7 @@ class HingeBending : public ShellEnergy {
   double add_gradient_and_value(ConstVectors x, Vectors g) const override;
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
-  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
                             SymmetricMatrix& matrix) const override;
 
  private:

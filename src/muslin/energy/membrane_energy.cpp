@@ -1,7 +1,9 @@
 #include "muslin/energy/membrane_energy.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "muslin/core/vector_code.hpp"
 
@@ -9,6 +11,10 @@ namespace muslin {
 namespace {
 
 constexpr int lanes = element_lanes;
+
+/// Triangles that buckle may take this share of the masses; none where they are stiffer beside the masses than
+/// this, because float would round away what is left of these.
+constexpr double held_share = 0.9, most_stiff = 3e4;
 
 using Rest = TriangleRest;
 using Strained = StrainedTriangles;
@@ -98,11 +104,38 @@ MUSLIN_VECTOR_CODE void strained_of_kind(const MembraneEnergy::Constants& c, Sti
   stress_of_kind(kind, s);
 }
 
+/// Keeps the positive part of the stress. Scales the negative part N, times the area, so that it takes at most
+/// `held` [kg] from the masses. For a motion p along one axis, with b the gradients of the corners' shape
+/// functions and N = Σ sᵢ qᵢqᵢᵀ,
+///
+///   scale Σ |sᵢ| (∇p·qᵢ)² ≤ scale Σ |sᵢ| Σ_c (b_c·qᵢ)² |p|² = −scale N : (Σ_c b_c b_cᵀ) |p|².
+MUSLIN_INLINE void bound(const Rest& rest, double scale, const double* held, Strained& s) {
+  double uu[lanes], vv[lanes], uv[lanes];
+  for (int l = 0; l < lanes; ++l) uu[l] = s.suu[l], vv[l] = s.svv[l], uv[l] = s.suv[l];
+  project(s.suu, s.svv, s.suv);
+  for (int l = 0; l < lanes; ++l) {
+    const double nuu = uu[l] - s.suu[l], nvv = vv[l] - s.svv[l], nuv = uv[l] - s.suv[l];
+    const double u1 = rest.d00[l], u2 = rest.d10[l], v1 = rest.d01[l], v2 = rest.d11[l];
+    const double u0 = -(u1 + u2), v0 = -(v1 + v2);
+    const double buckling = -scale * (nuu * (u0 * u0 + u1 * u1 + u2 * u2) + nvv * (v0 * v0 + v1 * v1 + v2 * v2) +
+                                      2 * nuv * (u0 * v0 + u1 * v1 + u2 * v2));
+    const double share = buckling > held[l] ? held[l] / buckling : 1;
+    s.suu[l] += share * nuu;
+    s.svv[l] += share * nvv;
+    s.suv[l] += share * nuv;
+  }
+}
+
+/// `held`: by lane, read only for the bounded stiffness [kg].
 MUSLIN_VECTOR_CODE void block_factors(const MembraneEnergy::Constants& c, Stiffness kind, const Rest& rest,
-                                      double scale, const Batch<3>& x, BlockFactors& f) {
+                                      double scale, const double* held, const Batch<3>& x, BlockFactors& f) {
   Strained s;
   strain(c, rest, x, s);
-  stress_of_kind(kind, s);
+  if (kind == Stiffness::bounded) {
+    bound(rest, scale, held, s);
+  } else {
+    stress_of_kind(kind, s);
+  }
   find_block_factors(Moduli{c}, rest, s, scale, f);
 }
 
@@ -124,7 +157,23 @@ MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
   constants_.c22 = moduli.weft * plane_stress;
   constants_.c12 = moduli.poisson * std::sqrt(moduli.warp * moduli.weft) * plane_stress;
   constants_.g = moduli.shear;
-  if (pattern()) slots_ = slabs_.slots(*pattern());
+  if (!pattern()) return;
+  slots_ = slabs_.slots(*pattern());
+  mass_shares_ = slabs_.by_entry<std::array<double, 3>>([&](std::size_t t) {
+    const Vec3i& corners = shell.triangles[t];
+    std::array<double, 3> shares;
+    for (int c = 0; c < 3; ++c)
+      shares[static_cast<std::size_t>(c)] =
+          shell.areas[t] / 3 / shell.vertex_areas[static_cast<std::size_t>(corners[c])];
+    return shares;
+  });
+  stiffness_ = slabs_.by_entry<double>([&](std::size_t t) {
+    const Mat2& d = shell.inverses[t];
+    const Eigen::RowVector2d first = -(d.row(0) + d.row(1));
+    const double uu = d.col(0).squaredNorm() + first[0] * first[0];
+    const double vv = d.col(1).squaredNorm() + first[1] * first[1];
+    return shell.areas[t] * ((constants_.c11 + constants_.g) * uu + (constants_.c22 + constants_.g) * vv);
+  });
 }
 
 double MembraneEnergy::value(ConstVectors x) const {
@@ -181,12 +230,21 @@ void MembraneEnergy::add_stiffness_blocks(Stiffness kind, ConstVectors x, std::s
 }
 
 void MembraneEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
-                                          SymmetricMatrix& matrix) const {
+                                          std::span<const double> masses, SymmetricMatrix& matrix) const {
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {
     Batch<3> corners;
     BlockFactors factors;
+    double held[lanes] = {};
+    for (int l = 0; kind == Stiffness::bounded && l < count; ++l) {
+      const auto entry = static_cast<std::size_t>(first + l);
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t c = 0; c < 3; ++c)
+        least = std::min(least, mass_shares_[entry][c] *
+                                    masses[static_cast<std::size_t>(slabs_.vertices()[entry][c])]);
+      held[l] = scale * stiffness_[entry] < most_stiff * least ? held_share * least : 0;
+    }
     slabs_.gather(first, count, x, corners);
-    block_factors(constants_, kind, rests_.at(first), scale, corners, factors);
+    block_factors(constants_, kind, rests_.at(first), scale, held, corners, factors);
     unsigned rows[lanes];
     slabs_.corners_in(first, count, slab, rows);
     add_blocks(factors, count, rows, slots_.data() + first, matrix.block(0));

@@ -10,9 +10,12 @@
 //   dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db + b·da)).
 //
 // The exact Hessian adds the geometric stiffness S ⊗ I to the material one; the projected one takes the
-// positive semidefinite part of S there. docs/theory/shells.md.
+// positive semidefinite part of S there, the bounded one that and as much of the rest as the triangle's share
+// of the masses holds. docs/theory/shells.md.
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "muslin/energy/element_slabs.hpp"
@@ -41,7 +44,7 @@ class MembraneEnergy : public ShellEnergy {
   double add_gradient_and_value(ConstVectors x, Vectors g) const override;
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
-  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
                             SymmetricMatrix& matrix) const override;
 
   struct Constants {
@@ -53,6 +56,8 @@ class MembraneEnergy : public ShellEnergy {
   ElementSlabs<3> slabs_;
   std::vector<ElementSlabs<3>::Slots> slots_;  // by entry: the block of each pair of corners
   TriangleRests rests_;
+  std::vector<std::array<double, 3>> mass_shares_;  // by entry: of the corners' masses
+  std::vector<double> stiffness_;                   // by entry: trace of the material blocks at rest [N/m]
 };
 
 }  // namespace muslin

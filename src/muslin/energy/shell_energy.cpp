@@ -38,7 +38,7 @@ class Dashpots : public Potential {
 
   void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
     if (energy_->pattern()) {
-      energy_->add_stiffness_matrix(Stiffness::material, predicted_, into.scale() * factor_,
+      energy_->add_stiffness_matrix(Stiffness::material, predicted_, into.scale() * factor_, {},
                                     into.matrix(energy_->pattern(), first));
     } else {
       into.add_general(*this, first, x);

@@ -1,7 +1,8 @@
-// What the energies of a shell have in common: three kinds of stiffness, and damping made from one of them.
+// What the energies of a shell have in common: four kinds of stiffness, and damping made from one of them.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "muslin/potential/potential.hpp"
@@ -14,12 +15,13 @@ namespace muslin {
 enum class Stiffness {
   material,   ///< the first term alone: what resists a change of strain; positive semidefinite
   projected,  ///< and of the second what pulls but not what buckles; positive semidefinite
+  bounded,    ///< as projected, and of membranes as much of what buckles as the masses hold; matrices only
   exact,      ///< both
 };
 
-/// An elastic energy of a shell. Its Hessian is exact; what it gives the inner solver and the preconditioner
-/// is projected, so that one positive semidefinite matrix serves both (docs/theory/shells.md says what that
-/// costs and saves).
+/// An elastic energy of a shell. Its Hessian is exact. The matrix for the inner solver is bounded, which
+/// spares conjugate gradients and the coarse space negative curvature; without a pattern it is projected
+/// (docs/theory/shells.md).
 class ShellEnergy : public Potential {
  public:
   explicit ShellEnergy(std::shared_ptr<const SymmetricPattern> pattern)
@@ -36,15 +38,18 @@ class ShellEnergy : public Potential {
   void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override {
     add_stiffness_blocks(Stiffness::projected, x, blocks);
   }
-  /// Adds `scale` K to the blocks of a matrix of pattern(); `kind` is material or projected.
-  virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+  /// Adds `scale` K to the blocks of a matrix of pattern(); `kind` is not exact. With `bounded`, M + scale K
+  /// is at least a tenth of M, the diagonal of `masses` (#V, read only then), in every direction; of the
+  /// energies of a shell only the membrane takes of the masses.
+  virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
                                     SymmetricMatrix& matrix) const = 0;
   /// Of the shell, if one was given; without, the inner solver computes products from x.
   const std::shared_ptr<const SymmetricPattern>& pattern() const { return pattern_; }
 
   void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
     if (pattern_) {
-      add_stiffness_matrix(Stiffness::projected, x, into.scale(), into.matrix(pattern_, first));
+      add_stiffness_matrix(Stiffness::bounded, x, into.scale(), into.masses().subspan(first, x.size()),
+                           into.matrix(pattern_, first));
     } else {
       into.add_general(projected_, first, x);
     }

@@ -294,6 +294,7 @@ void StretchLimitEnergy::add_stiffness_blocks(Stiffness kind, ConstVectors x, st
 }
 
 void StretchLimitEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+                                              std::span<const double> /*masses*/,
                                               SymmetricMatrix& matrix) const {
   const double square = barrier_.onset() * barrier_.onset();
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {

@@ -74,7 +74,7 @@ class StretchLimitEnergy : public ShellEnergy {
   /// The material kind is that of stretch alone.
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
-  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
                             SymmetricMatrix& matrix) const override;
 
   const StretchBarrier& barrier() const { return barrier_; }

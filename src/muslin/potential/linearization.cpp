@@ -10,6 +10,9 @@ namespace muslin {
 namespace {
 
 constexpr std::size_t grain = 8192;  // vertices
+/// Contact adds at most this times the mass to a diagonal block of the preconditioner. With more, float and the
+/// packed factors of sixteen vertices would lose masses.
+constexpr float most_relative = 1e5;
 
 }  // namespace
 
@@ -21,6 +24,7 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   matrices_.clear();
   generals_.clear();
   relative_count_ = 0;
+  stiffest_relative_ = 0;
   identity_.resize(masses.size());
   for (std::size_t v = 0; v < masses.size(); ++v) identity_.data()[v] = static_cast<float>(masses[v]);
 }
@@ -122,7 +126,9 @@ void Linearization::find_rest_diagonal() {
   }
   for (std::size_t i = 0; i < relative_count_; ++i) {
     const auto first = static_cast<std::ptrdiff_t>(relatives_[i]->first());
-    relatives_[i]->add_diagonal(u + first, l + first);
+    const double stiffest = relatives_[i]->add_diagonal(
+        identity() + first, this->fixed() + first, most_relative, u + first, l + first);
+    stiffest_relative_ = std::max(stiffest_relative_, stiffest);
   }
   if (generals_.empty()) return;
   blocks_.assign(size(), Mat3::Zero());
@@ -139,6 +145,10 @@ void Linearization::find_rest_diagonal() {
       l.z[v] += static_cast<float>(block(2, 2));
     }
   });
+}
+
+bool Linearization::has_couplings() const {
+  return std::any_of(sets_.begin(), sets_.end(), [](const Couplings* set) { return set->pattern().block_count() > 0; });
 }
 
 void Linearization::project() {

@@ -30,12 +30,13 @@ class Linearization {
 
   std::size_t size() const { return identity_.size(); }
   double scale() const { return scale_; }
+  std::span<const double> masses() const { return masses_; }
 
   /// The couplings of this pattern on vertices first, first + 1, …; zero when first asked for. A vertex has
   /// couplings of one pattern only.
   Couplings& couplings(const std::shared_ptr<const CouplingPattern>& pattern, std::size_t first);
   /// The blocks of this pattern on vertices first, first + 1, …; zero when first asked for. What is added
-  /// must be symmetric and positive semidefinite.
+  /// must be symmetric and, with the masses, positive definite.
   SymmetricMatrix& matrix(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first);
   /// A relative stiffness between `count` vertices first, first + 1, …, without terms yet; scaled already.
   RelativeStiffness& relative_stiffness(std::size_t first, std::size_t count);
@@ -59,14 +60,18 @@ class Linearization {
   /// Couplings of all vertices in ascending order, empty ones for vertices that have none.
   std::span<const Couplings* const> sets() const { return sets_; }
   std::span<const SymmetricMatrix* const> matrices() const { return matrices_; }
+  bool has_couplings() const;
   const float* identity() const { return identity_.data(); }
   const std::uint8_t* fixed() const { return fixed_.data(); }
 
   /// Whether K is not zero.
   bool has_rest() const { return !matrices_.empty() || !generals_.empty() || relative_count_ > 0; }
-  /// Positive semidefinite diagonal blocks of K: xx, xy, xz of `upper` and yy, yz, zz of `lower`, #V by 3.
+  /// Diagonal blocks of K, with the identity positive definite: xx, xy, xz of `upper` and yy, yz, zz of
+  /// `lower`, #V by 3. What relative stiffnesses add is scaled down where masses would vanish beside it.
   const FloatVectors& rest_upper() const { return upper_; }
   const FloatVectors& rest_lower() const { return lower_; }
+  /// The largest trace of a diagonal block of relative stiffnesses over the vertex' part of the identity.
+  double stiffest_relative() const { return stiffest_relative_; }
   /// y += K p, #V by 3 and a zero each; returns pᵀK p.
   double add_rest_product(const Float4* p, Float4* y);
 
@@ -93,6 +98,7 @@ class Linearization {
   std::vector<std::unique_ptr<RelativeStiffness>> relatives_;  // reused from step to step
   std::size_t relative_count_ = 0;                             // of this x
   FloatVectors upper_, lower_;
+  double stiffest_relative_ = 0;
   std::vector<Vec3> p_, y_;  // for products in double
   std::vector<Mat3> blocks_;
 };

@@ -1,5 +1,7 @@
 #include "muslin/potential/relative_stiffness.hpp"
 
+#include <algorithm>
+
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
@@ -73,8 +75,14 @@ double RelativeStiffness::add_product(const Float4* p, Float4* y) {
   return curvature;
 }
 
-void RelativeStiffness::add_diagonal(Floats upper, Floats lower) const {
-  parallel_for(vertices_.size(), grain, [&](std::size_t begin, std::size_t end) {
+double RelativeStiffness::add_diagonal(const float* identity, const std::uint8_t* fixed, float most,
+                                       Floats upper, Floats lower) const {
+  struct Largest {
+    float value = 0;
+    Largest operator+(const Largest& other) const { return {std::max(value, other.value)}; }
+  };
+  const auto largest = parallel_sum(vertices_.size(), grain, Largest{}, [&](std::size_t begin, std::size_t end) {
+    Largest ratio;
     for (std::size_t i = begin; i < end; ++i) {
       Float4 x = {0, 0, 0, 0}, y = x;
       float zz = 0;
@@ -88,10 +96,15 @@ void RelativeStiffness::add_diagonal(Floats upper, Floats lower) const {
         zz += n[2] * term.normal[2] + across;
       }
       const int v = vertices_[i];
-      upper.x[v] += x[0], upper.y[v] += x[1], upper.z[v] += x[2];
-      lower.x[v] += y[1], lower.y[v] += y[2], lower.z[v] += zz;
+      const float trace = x[0] + y[1] + zz, bound = most * identity[v];
+      const float scale = trace > bound ? bound / trace : 1;
+      if (fixed[v] == 0) ratio.value = std::max(ratio.value, trace / identity[v]);
+      upper.x[v] += scale * x[0], upper.y[v] += scale * x[1], upper.z[v] += scale * x[2];
+      lower.x[v] += scale * y[1], lower.y[v] += scale * y[2], lower.z[v] += scale * zz;
     }
+    return ratio;
   });
+  return static_cast<double>(largest.value);
 }
 
 std::size_t RelativeStiffness::bytes() const {

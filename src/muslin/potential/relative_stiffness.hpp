@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,8 +32,11 @@ class RelativeStiffness {
   std::size_t first() const { return first_; }
   /// y += K p, #V by 3 and a zero each, starting at the body; returns pᵀK p.
   double add_product(const Float4* p, Float4* y);
-  /// Adds the diagonal blocks: xx, xy, xz, yy, yz, zz are the components of `upper` and `lower`.
-  void add_diagonal(Floats upper, Floats lower) const;
+  /// Adds the diagonal blocks: xx, xy, xz, yy, yz, zz are the components of `upper` and `lower`. A block whose
+  /// trace is more than `most` times the vertex' `identity` is scaled down to that. Returns the largest ratio
+  /// there was of a vertex that is not `fixed`.
+  double add_diagonal(const float* identity, const std::uint8_t* fixed, float most, Floats upper,
+                      Floats lower) const;
 
   std::size_t bytes() const;
 

@@ -13,6 +13,7 @@
 #include "muslin/energy/volume_energy.hpp"
 #include "muslin/potential/mass_damping.hpp"
 #include "muslin/potential/restricted.hpp"
+#include "muslin/potential/stopping_time.hpp"
 #include "muslin/scene/build_body.hpp"
 #include "muslin/scene/build_loads.hpp"
 
@@ -139,13 +140,13 @@ class BodyMaterial {
 /// In units of mass/step²: distortions swing at √1000 = 32 radians a step, and a body that is accelerated by
 /// g through a point of its surface is dented there by about 5 g step²/1000, 1 µm at steps of 1/240 s. Longer
 /// steps keep the rigidity of these: what rests on friction would slip by a dent whenever their length changes.
-constexpr double rigidity = 1000, longest_step = 1.0 / 240;
+constexpr double rigidity = 1000;
 
 class Rigidity : public Load {
  public:
   Rigidity(const Vec3& radii, double stiffness) : radii_(radii), stiffness_(stiffness) {}
   std::unique_ptr<Potential> potential(const StepContext& step) const override {
-    const double length = std::min(step.length, longest_step);
+    const double length = std::min(step.length, stopping_time);
     return std::make_unique<AffineBodyEnergy>(radii_, stiffness_ / (length * length));
   }
 

@@ -3,6 +3,7 @@
 // left to the caller's next iteration in double.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "muslin/potential/linearization.hpp"
@@ -22,10 +23,14 @@ class InnerSolver {
   /// Linearises at x. x stays valid for as long as `solve` is called.
   void linearize(const IncrementalPotential& function, ConstVectors x);
 
-  /// Largest ‖diagonal block‖ / mass. Above `float_limit` masses vanish beside stiffnesses in float and
-  /// `solve` must not be used.
-  double stiffest() const { return stiffest_; }
-  static constexpr double float_limit = 3e5;
+  /// Largest ‖diagonal block‖ / mass of a free vertex, without contact or of contact alone.
+  double stiffest() const { return std::max(stiffest_, h_.stiffest_relative()); }
+  /// False where masses vanish beside stiffnesses in float: `solve` must not be used. Contact is capped in the
+  /// factors and does not count here.
+  bool fits_float() const { return stiffest_ <= float_limit; }
+
+  /// Whether springs are part of H, which then is the true Hessian and may be indefinite.
+  bool has_couplings() const { return h_.has_couplings(); }
 
   /// Solves H s = b for the Hessian linearised last, as conjugate_gradient does. `norm` receives √(bᵀP⁻¹b).
   /// Where the very first direction has negative curvature, H is replaced by its projection until the next
@@ -50,7 +55,8 @@ class InnerSolver {
   SplitSystem system_;
   ConstVectors rest_positions_;
   std::unique_ptr<CoarseSpace> coarse_space_;  // kept from step to step
-  double stiffest_ = 0;
+  static constexpr double float_limit = 3e5;
+  double stiffest_ = 0;             // of the factors
   bool projected_ = false;
   bool assembled_ = false;          // the coarse matrix, in this step
   double iterations_a_decade_ = 0;  // that the residual fell by, without the coarse space, in this step

@@ -19,9 +19,12 @@ constexpr double armijo = 1e-4;
 constexpr double slope_share = 0.9;  // approximate Wolfe: the slope must have risen above −0.9 of the first
 constexpr double rounding = 1e-12;   // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-8;
-constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-4;
+constexpr double forcing_of_shells = 0.05, loosest_forcing = 0.1, tightest_forcing = 1e-4;
 /// A step that has not converged by then is tried in halves, or taken and said not to have.
 constexpr int max_iterations = 30, max_exact_iterations = 300;
+
+/// Linear iterations after which float has lost what it solves for.
+constexpr int most_in_float = 1000;
 
 /// Iterations in which friction is lagged anew. Where forces of contact change from one to the next, so does
 /// the minimum, and none would be reached.
@@ -48,8 +51,8 @@ class Newton {
         there_(workspace.x),
         count_(x.size()),
         scale_(function.dt() * function.dt()),
-        error_(problem, function, settings.error_tolerance()),
-        loosest_(std::clamp(settings.error_tolerance(), tightest_forcing, loosest_forcing)),
+        tolerance_(settings.error_tolerance()),
+        error_(problem, function, tolerance_),
         max_iterations_(settings.effort == Effort::exact ? max_exact_iterations : max_iterations),
         with_contact_(problem) {
     for (auto* vectors : {&there_, &g_, &s_, &d_, &workspace.base}) vectors->resize(count_);
@@ -171,6 +174,7 @@ class Newton {
       const Stopwatch watch(report_.linearize_seconds);
       inner_.linearize(full(), x_);
     }
+    if (report_.newton_iterations == 0) forcing_ = loosest();
     if (imbalance_.largest <= function_.rounding_floor(x_, inner_.stiffest())) return done(true);
     ++report_.newton_iterations;
     inner_.precondition(g_, there_);
@@ -183,9 +187,13 @@ class Newton {
     inner_.precondition(g_, there_);
     const bool good = error_.end(x_, state_.positions, g_, there_, s_, d_, length_t_);
     const double shrink = imbalance_.norm / norm;
-    forcing_ = std::clamp(0.9 * shrink * shrink, tightest_forcing, loosest_);
-    forcing_ = std::clamp(std::max(forcing_, error_.wanted_forcing()), tightest_forcing, loosest_);
+    forcing_ = std::clamp(std::max(0.9 * shrink * shrink, error_.wanted_forcing()), tightest_forcing, loosest());
     return good ? done(true) : true;
+  }
+
+  /// Springs that buckle make H indefinite. Then loose solves lead nowhere, and tight steps want tight solves.
+  double loosest() const {
+    return inner_.has_couplings() ? std::clamp(tolerance_, tightest_forcing, loosest_forcing) : forcing_of_shells;
   }
 
   bool done(bool converged) {
@@ -279,8 +287,8 @@ class Newton {
   std::vector<Vec3>&g_, &s_, &d_, &there_;
   std::size_t count_;
   double scale_;
+  double tolerance_;
   StepError error_;
-  double loosest_;  ///< forcing; no looser than the tolerance, since residuals hardly show smooth errors
   int max_iterations_;
   StepProblem with_contact_;
   StepReport report_;
@@ -288,7 +296,7 @@ class Newton {
   IncrementalPotential::Imbalance imbalance_;  ///< at x, of everything
   const Potential* contact_ = nullptr;
   double contact_value_ = 0;
-  double forcing_ = loosest_;
+  double forcing_ = 0;
   double length_t_ = 1;  ///< the share of d_ that was gone
   int held_back_ = 0;
 };
@@ -297,9 +305,12 @@ class Newton {
 
 LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
                           const LinearSettings& settings, InnerSolver& inner, Vectors s) {
-  if (inner.stiffest() <= InnerSolver::float_limit) {
+  if (inner.fits_float()) {
     double norm;
-    return inner.solve(b, settings, s, norm);
+    LinearSettings in_float = settings;
+    in_float.max_iterations = most_in_float;
+    const LinearReport report = inner.solve(b, in_float, s, norm);
+    if (report.converged || report.negative_curvature) return report;
   }
   std::vector<Mat3> blocks(b.size());
   std::vector<Vec3> residual(b.size());

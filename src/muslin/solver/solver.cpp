@@ -38,7 +38,7 @@ LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x,
   inner.begin_step();
   inner.linearize(function, x);
   LinearReport report;
-  if (inner.stiffest() <= InnerSolver::float_limit) {
+  if (inner.fits_float()) {
     std::vector<Vec3> correction(count), product(count);
     std::fill(s.begin(), s.end(), Vec3::Zero());
     std::copy(b.begin(), b.end(), residual.begin());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "muslin/potential/stopping_time.hpp"
+
 namespace muslin {
 namespace {
 
@@ -13,8 +15,8 @@ constexpr double smallest = 1e-14;
 /// Work of the residual, as a share of what moves, over the tolerance: what correct_work can take out.
 constexpr double leak_share = 0.01;
 constexpr double slowest = 0.9;
-/// A body at rest presses contact by about what it would fall in this time [s], however long steps are.
-constexpr double stopping_time = 1.0 / 240;
+/// A Newton step at least so long as a share of P⁻¹g was solved for.
+constexpr double solved_share = 0.5;
 
 }  // namespace
 
@@ -62,14 +64,18 @@ bool StepError::bound(ConstVectors x, ConstVectors g) {
 }
 
 void StepError::begin(ConstVectors g, ConstVectors z) {
-  for (Part& part : parts_) part.norm = 0;
-  for (std::size_t v = 0; v < g.size(); ++v) parts_[part_of(v)].norm += g[v].dot(z[v]);
+  for (Part& part : parts_) part.norm = part.foretold = 0;
+  for (std::size_t v = 0; v < g.size(); ++v) {
+    Part& part = parts_[part_of(v)];
+    part.norm += g[v].dot(z[v]);
+    if (!function_.held(v)) part.foretold += problem_.masses[v] * z[v].squaredNorm();
+  }
 }
 
 bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVectors z, ConstVectors s,
                     ConstVectors d, double t) {
   struct Sums {
-    double norm = 0, step = 0, cut = 0, largest_step = 0, largest_cut = 0, leak = 0, moved = 0;
+    double norm = 0, step = 0, gone = 0, cut = 0, largest_step = 0, largest_cut = 0, leak = 0, moved = 0;
   };
   find_allowed(x);
   std::vector<Sums> sums(parts_.size());
@@ -80,6 +86,7 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
     const Vec3 way = x[v] - from[v];
     sum.norm += g[v].dot(z[v]);
     sum.step += m * step;
+    sum.gone += m * t * t * d[v].squaredNorm();
     sum.cut += m * cut;
     sum.largest_step = std::max(sum.largest_step, step);
     sum.largest_cut = std::max(sum.largest_cut, cut);
@@ -89,12 +96,15 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
   bool good = true;
   largest_ = worst_ratio_ = 0;
   for (std::size_t p = 0; p < parts_.size(); ++p) {
-    const Part& part = parts_[p];
+    Part& part = parts_[p];
     const Sums& sum = sums[p];
     if (!(part.mass > 0)) continue;
     // Rounding may leave the preconditioner indefinite. Then the ratio says nothing, and 1 is safe.
     const double fallen = sum.norm / part.norm;
-    const double ratio = part.norm == 0 ? 0 : fallen >= 0 ? std::sqrt(fallen) : 1;
+    double ratio = part.norm == 0 ? 0 : fallen >= 0 ? std::sqrt(fallen) : 1;
+    if (part.gone > 0 && sum.step >= solved_share * solved_share * part.foretold)
+      ratio = std::min(ratio, std::sqrt(sum.step / part.gone));
+    part.gone = sum.gone;
     const double left = ratio / (1 - std::min(ratio, slowest));
     const double mean = (left * std::sqrt(sum.step) + std::sqrt(sum.cut)) / std::sqrt(part.mass);
     const double local = left * std::sqrt(sum.largest_step) + std::sqrt(sum.largest_cut);

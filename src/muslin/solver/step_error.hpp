@@ -2,9 +2,11 @@
 //
 // H ⪰ M where the potentials are convex, so that the mass-weighted norm of the error is at most that of
 // M⁻¹ g: where that alone is small enough nothing need be solved for. Otherwise the error after a Newton step
-// s is taken to be |s| ρ / (1 − ρ), ρ = ‖g₊‖ / ‖g‖ in the norm of the preconditioner, plus what was taken
-// from s. Bodies are judged part by part, so that a heavy one does not hide a light one: the root mean square
-// over the masses of a part, and a tenth of the largest error of its vertices.
+// s is taken to be |s| ρ / (1 − ρ), plus what was taken from s. ρ is the rate of convergence: ‖g₊‖ / ‖g‖ in
+// the norm of the preconditioner, or the length of s over that of the last motion, whichever is less. The
+// latter counts only if s is as long as what the preconditioner alone foretells: a system that was not solved
+// for this part gives a short s as well. Bodies are judged part by part, so that a heavy one does not hide a
+// light one: the root mean square over the masses of a part, and a tenth of the largest error of its vertices.
 //
 // Allowed are tolerance · min(a dt², h): h the mean edge of the part, a the larger of the acceleration that
 // loads give it and of what it is accelerated by in this step (root mean squares).
@@ -41,6 +43,8 @@ class StepError {
   struct Part {
     double mass = 0;
     double norm = 0;      ///< gᵀ z before the step
+    double foretold = 0;  ///< Σ m z² before the step
+    double gone = 0;      ///< Σ m (t d)² of the Newton step before; 0: none
     double allowed = 0;   ///< [m]
   };
   std::size_t part_of(std::size_t v) const {
