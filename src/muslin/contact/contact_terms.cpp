@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <unordered_map>
 #include <utility>
@@ -75,10 +76,35 @@ double range_of(const ContactSurface& surface, const ContactPair& pair, ConstVec
   return sagitta < round_sagitta * pair.range ? 0 : round_range * pair.range;
 }
 
-/// Lists up to this long are searched one by one.
-constexpr std::size_t few = 24;
-
 bool is_near(double gap, double range) { return gap > 0 && gap < PairDistances::ranges_known * range; }
+
+/// The places of keys in a list to which they are added one by one. Short lists are searched key by key, long
+/// ones by a table: most vertices are near to a few features, a ball to thousands.
+template <class Key, class Hash>
+class Places {
+ public:
+  void clear() {
+    keys_.clear();
+    table_.clear();
+  }
+  /// The length of the list for a key that is not in it.
+  std::size_t find(const Key& key) const {
+    if (table_.empty())
+      return static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin());
+    const auto known = table_.find(key);
+    return known == table_.end() ? keys_.size() : known->second;
+  }
+  void add(const Key& key) {
+    keys_.push_back(key);
+    if (keys_.size() <= few) return;
+    for (std::size_t i = table_.empty() ? 0 : keys_.size() - 1; i < keys_.size(); ++i) table_.emplace(keys_[i], i);
+  }
+
+ private:
+  static constexpr std::size_t few = 24;
+  std::vector<Key> keys_;
+  std::unordered_map<Key, std::size_t, Hash> table_;
+};
 
 /// The terms of one vertex against the triangles of `pairs`.
 class VertexTerms {
@@ -89,8 +115,6 @@ class VertexTerms {
   void add(std::span<const int> pairs) {
     edges_.clear();
     corners_.clear();
-    edge_places_.clear();
-    corner_places_.clear();
     const std::span<const ContactPair> all = distances_.candidates().pairs();
     bool reduced = false;
     for (const int i : pairs) {
@@ -100,9 +124,9 @@ class VertexTerms {
       for (int k = 0; k < 3; ++k) {
         const bool corner_again =
             (k > 0 && corners[k] == corners[0]) || (k == 2 && corners[2] == corners[1]);
-        if (!corner_again) note(corners_, corner_places_, corners[k], pair);
+        if (!corner_again) note(corners_, corners[k], pair);
         const bool edge_again = (k > 0 && edges[k] == edges[0]) || (k == 2 && edges[2] == edges[1]);
-        if (edges[k] >= 0 && !edge_again) note(edges_, edge_places_, edges[k], pair);
+        if (edges[k] >= 0 && !edge_again) note(edges_, edges[k], pair);
       }
       const double range = range_of(surface_, pair, distances_.points());
       reduced |= range < pair.range;
@@ -114,16 +138,16 @@ class VertexTerms {
     const ContactPair& first = all[static_cast<std::size_t>(pairs[0])];
     const int v = first.points[0];
     if (reduced && is_lone_point(v)) add_corners(v, first);
-    for (const Feature& e : edges_) {
+    for (const Feature& e : edges_.all) {
       if (e.triangles == 1) continue;
       const ContactSurface::Edge& ends = surface_.edges()[static_cast<std::size_t>(e.index)];
       for (const int end : ends) {
-        const std::size_t place = place_of(corners_, corner_places_, end);
-        if (place < corners_.size()) corners_[place].coefficient -= 1 - e.triangles;
+        const std::size_t place = corners_.places.find(end);
+        if (place < corners_.all.size()) corners_.all[place].coefficient -= 1 - e.triangles;
       }
       add_feature(e, {v, ends[0], ends[1], -1}, ContactTerm::Kind::vertex_edge, 1 - e.triangles);
     }
-    for (const Feature& corner : corners_) {
+    for (const Feature& corner : corners_.all) {
       add_feature(corner, {v, corner.index, -1, -1}, ContactTerm::Kind::vertex_vertex,
                   corner.coefficient + 1 - corner.triangles);
     }
@@ -138,7 +162,7 @@ class VertexTerms {
 
   /// The centre of a sphere and the corners of triangles; the search finds them with the triangles only.
   void add_corners(int v, const ContactPair& pair) {
-    for (const Feature& corner : corners_) {
+    for (const Feature& corner : corners_.all) {
       ContactTerm term;
       term.kind = ContactTerm::Kind::vertex_vertex;
       term.points = {v, corner.index, -1, -1};
@@ -151,38 +175,32 @@ class VertexTerms {
     }
   }
 
-  using Places = std::unordered_map<int, std::size_t>;
   struct Feature {
     int index = 0, triangles = 0, coefficient = 0;
     double thickness = 0, range = 0;
   };
-
-  /// Of the feature with this index among `features`, their number if it is not. A ball is near to thousands.
-  static std::size_t place_of(const std::vector<Feature>& features, const Places& places, int index) {
-    if (features.size() > few) {
-      const auto known = places.find(index);
-      return known == places.end() ? features.size() : known->second;
+  /// Edges or corners, each once.
+  struct Features {
+    std::vector<Feature> all;
+    Places<int, std::hash<int>> places;
+    void clear() {
+      all.clear();
+      places.clear();
     }
-    return static_cast<std::size_t>(std::find_if(features.begin(), features.end(),
-                                                 [&](const Feature& f) { return f.index == index; }) -
-                                    features.begin());
-  }
+  };
 
-  void note(std::vector<Feature>& features, Places& places, int index, const ContactPair& pair) const {
+  void note(Features& features, int index, const ContactPair& pair) const {
     const double range = range_of(surface_, pair, distances_.points());
-    const std::size_t place = place_of(features, places, index);
-    if (place < features.size()) {
-      Feature& known = features[place];
+    const std::size_t place = features.places.find(index);
+    if (place < features.all.size()) {
+      Feature& known = features.all[place];
       ++known.triangles;
       known.thickness = std::min(known.thickness, pair.thickness);
       known.range = std::min(known.range, range);
       return;
     }
-    features.push_back({index, 1, 0, pair.thickness, range});
-    if (features.size() < few + 1) return;
-    if (features.size() == few + 1)
-      for (std::size_t i = 0; i < few; ++i) places.emplace(features[i].index, i);
-    places.emplace(index, place);
+    features.all.push_back({index, 1, 0, pair.thickness, range});
+    features.places.add(index);
   }
 
   void add_feature(const Feature& feature, const std::array<int, 4>& points, ContactTerm::Kind kind,
@@ -204,8 +222,7 @@ class VertexTerms {
   const PairDistances& distances_;
   double dt_;
   std::vector<ContactTerm>& out_;
-  std::vector<Feature> edges_, corners_;
-  Places edge_places_, corner_places_;  ///< of features, where there are more than a few
+  Features edges_, corners_;
 };
 
 /// Leaves out points without weight and names each point once.
@@ -239,49 +256,18 @@ MergedContact reduced(const ContactTerm& term, const PairGeometry& at) {
   return contact;
 }
 
-/// Contacts of the same points among those of one vertex, which follow one another. A ball has thousands.
-class SameContacts {
- public:
-  explicit SameContacts(std::vector<MergedContact>& all) : all_(all) {}
-
-  MergedContact* find(const MergedContact& contact) {
-    if (!all_.empty() && all_.back().points[0] != contact.points[0]) {
-      first_ = all_.size();
-      places_.clear();
-    }
-    if (!places_.empty()) {
-      const auto known = places_.find({contact.first_size, contact.points});
-      return known == places_.end() ? nullptr : &all_[known->second];
-    }
-    for (std::size_t i = first_; i < all_.size(); ++i)
-      if (all_[i].first_size == contact.first_size && all_[i].points == contact.points) return &all_[i];
-    return nullptr;
+/// What two features touch with.
+struct TouchingPoints {
+  int first_size;
+  std::array<int, 4> points;
+  bool operator==(const TouchingPoints&) const = default;
+};
+struct HashOfPoints {
+  std::size_t operator()(const TouchingPoints& p) const {
+    auto hash = static_cast<std::uint64_t>(p.first_size);
+    for (const int point : p.points) hash = (hash ^ static_cast<std::uint32_t>(point)) * 0x9e3779b97f4a7c15;
+    return hash ^ hash >> 32;
   }
-
-  void add(const MergedContact& contact) {
-    all_.push_back(contact);
-    if (all_.size() - first_ <= few) return;
-    for (std::size_t i = places_.empty() ? first_ : all_.size() - 1; i < all_.size(); ++i)
-      places_.emplace(Points{all_[i].first_size, all_[i].points}, i);
-  }
-
- private:
-  struct Points {
-    int first_size;
-    std::array<int, 4> points;
-    bool operator==(const Points&) const = default;
-  };
-  struct Hash {
-    std::size_t operator()(const Points& p) const {
-      std::uint64_t hash = static_cast<std::uint64_t>(p.first_size);
-      for (const int point : p.points) hash = (hash ^ static_cast<std::uint32_t>(point)) * 0x9e3779b97f4a7c15;
-      return hash ^ hash >> 32;
-    }
-  };
-
-  std::vector<MergedContact>& all_;
-  std::size_t first_ = 0;  ///< of the vertex
-  std::unordered_map<Points, std::size_t, Hash> places_;  ///< where there are more than a few
 };
 
 }  // namespace
@@ -393,20 +379,29 @@ std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::s
       part.push_back(contact);
     }
   });
+  // Terms of one vertex follow one another.
   std::vector<MergedContact> merged;
-  SameContacts same_contacts(merged);
+  std::size_t first = 0;
+  Places<TouchingPoints, HashOfPoints> places;
   for (const std::vector<MergedContact>& part : parts) {
     for (const MergedContact& contact : part) {
-      MergedContact* const same = same_contacts.find(contact);
-      if (!same) {
-        same_contacts.add(contact);
+      if (!merged.empty() && merged.back().points[0] != contact.points[0]) {
+        first = merged.size();
+        places.clear();
+      }
+      const TouchingPoints points = {contact.first_size, contact.points};
+      const std::size_t place = first + places.find(points);
+      if (place == merged.size()) {
+        merged.push_back(contact);
+        places.add(points);
         continue;
       }
-      same->slope += contact.slope;
-      same->curvature += contact.curvature;
-      same->stiffness += contact.stiffness;
-      same->magnitude += contact.magnitude;
-      if (same->key == 0) same->key = contact.key;
+      MergedContact& same = merged[place];
+      same.slope += contact.slope;
+      same.curvature += contact.curvature;
+      same.stiffness += contact.stiffness;
+      same.magnitude += contact.magnitude;
+      if (same.key == 0) same.key = contact.key;
     }
   }
   std::erase_if(merged, [](const MergedContact& contact) {
