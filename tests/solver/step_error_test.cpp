@@ -78,7 +78,7 @@ TEST_F(OfMasses, DoesNotHideALightPartBehindAHeavyOne) {
 }
 
 TEST_F(OfMasses, TakesStepsThatShrinkForConvergenceWhateverTheResidualDoes) {
-  // What is out of balance grows where stiff contact comes in, though the motion hardly changes any more.
+  // Stiff contact that comes in raises the residual, though the motion hardly changes any more.
   const IncrementalPotential function(problem, goal, dt);
   StepError error(problem, function, tolerance);
   std::vector<Vec3> x(4, Vec3(0, 1e-3, 0));
@@ -99,7 +99,7 @@ TEST_F(OfMasses, TakesTheResidualWhereASystemWasNotSolved) {
 }
 
 TEST_F(OfMasses, TakesALimitedMotionForNoMoreThanItWas) {
-  // Where the guard left a hundredth of the step before, the next of a tenth of its length is no convergence.
+  // The guard left a hundredth of the first step. A second one of a tenth of its length shows no convergence.
   const IncrementalPotential function(problem, goal, dt);
   StepError error(problem, function, tolerance);
   const std::vector<Vec3> x(4, Vec3(0, 1e-3, 0)), s(4, Vec3(0, -1e-3, 0)), d(4, Vec3(0, -1e-5, 0));

@@ -20,7 +20,7 @@ constexpr double least_weight = 0.01;
 /// floor, how many floors. Less would press surfaces that meet at speed so close that their contact becomes
 /// too stiff for few iterations; but what pushes others along keyframes needs room to go on.
 constexpr double kept_deflected = 0.5, kept_before_pushing = 0.2, kept_floors = 1.5;
-/// Of what every pair keeps, how much more deflection leaves.
+/// Deflection leaves this many times what every pair must keep.
 constexpr double kept_more = 1.1;
 /// Rounds of deflection at most: vertices against triangles, edges against edges, then both. Each carries a
 /// push on by a layer.

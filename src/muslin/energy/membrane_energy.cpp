@@ -84,6 +84,7 @@ MUSLIN_INLINE void project(double* suu, double* svv, double* suv) {
 }
 
 MUSLIN_INLINE void stress_of_kind(Stiffness kind, Strained& s) {
+  assert(kind != Stiffness::bounded);
   if (kind == Stiffness::projected) project(s.suu, s.svv, s.suv);
   if (kind != Stiffness::material) return;
   for (int l = 0; l < lanes; ++l) s.suu[l] = s.svv[l] = s.suv[l] = 0;

@@ -1,4 +1,4 @@
-// What the energies of a shell have in common: four kinds of stiffness, and damping made from one of them.
+// The interface of the energies of a shell, with four kinds of stiffness, and damping made from one of them.
 #pragma once
 
 #include <memory>

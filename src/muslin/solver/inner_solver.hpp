@@ -29,7 +29,7 @@ class InnerSolver {
   /// factors and does not count here.
   bool fits_float() const { return stiffest_ <= float_limit; }
 
-  /// Whether springs are part of H, which then is the true Hessian and may be indefinite.
+  /// True if H has springs. Then it is the true Hessian and may be indefinite.
   bool has_couplings() const { return h_.has_couplings(); }
 
   /// Solves H s = b for the Hessian linearised last, as conjugate_gradient does. `norm` receives √(bᵀP⁻¹b).

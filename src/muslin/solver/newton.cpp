@@ -305,17 +305,21 @@ class Newton {
 
 LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
                           const LinearSettings& settings, InnerSolver& inner, Vectors s) {
+  int wasted = 0;
   if (inner.fits_float()) {
     double norm;
     LinearSettings in_float = settings;
     in_float.max_iterations = most_in_float;
     const LinearReport report = inner.solve(b, in_float, s, norm);
     if (report.converged || report.negative_curvature) return report;
+    wasted = report.iterations;
   }
   std::vector<Mat3> blocks(b.size());
   std::vector<Vec3> residual(b.size());
   function.diagonal_blocks(x, blocks);
-  return conjugate_gradient(function, x, BlockJacobi(function, blocks), b, settings, s, residual);
+  LinearReport report = conjugate_gradient(function, x, BlockJacobi(function, blocks), b, settings, s, residual);
+  report.iterations += wasted;
+  return report;
 }
 
 std::size_t NewtonWorkspace::bytes() const {
