@@ -14,7 +14,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t grain = 1024, surface_grain = 128;
 constexpr double rounding = 1e-9;
 /// A round body meets the insides of faces and edges within this share of the range, and not at all where
 /// they come nearer to it than their corners by less than the second share: then these are enough. One that
@@ -341,21 +341,24 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt
   std::sort(of_vertices.begin(), of_vertices.end(), [&](int i, int j) {
     return std::pair(pair_of(i).first, pair_of(i).second) < std::pair(pair_of(j).first, pair_of(j).second);
   });
-  VertexTerms of_vertex(distances, dt, terms);
-  for (std::size_t begin = 0; begin < of_vertices.size();) {
-    std::size_t end = begin + 1;
-    while (end < of_vertices.size() && pair_of(of_vertices[end]).first == pair_of(of_vertices[begin]).first)
-      ++end;
-    // Triangles of one body are one surface; another body is another contact.
-    for (std::size_t from = begin; from < end;) {
-      const int body = surface.body_of(pair_of(of_vertices[from]).points[3]);
-      std::size_t to = from + 1;
-      while (to < end && surface.body_of(pair_of(of_vertices[to]).points[3]) == body) ++to;
-      of_vertex.add(std::span(of_vertices).subspan(from, to - from));
-      from = to;
-    }
-    begin = end;
+  // A vertex meets the triangles of one body as one surface; another body is another contact.
+  std::vector<std::size_t> begins;
+  for (std::size_t k = 0; k < of_vertices.size(); ++k) {
+    const auto meets = [&](std::size_t at) {
+      const ContactPair& pair = pair_of(of_vertices[at]);
+      return std::pair(pair.first, surface.body_of(pair.points[3]));
+    };
+    if (k == 0 || meets(k) != meets(k - 1)) begins.push_back(k);
   }
+  const std::size_t surfaces = begins.size();
+  begins.push_back(of_vertices.size());
+  std::vector<std::vector<ContactTerm>> terms_of_block((surfaces + surface_grain - 1) / surface_grain);
+  parallel_for(surfaces, surface_grain, [&](std::size_t begin, std::size_t end) {
+    VertexTerms of_vertex(distances, dt, terms_of_block[begin / surface_grain]);
+    for (std::size_t s = begin; s < end; ++s)
+      of_vertex.add(std::span(of_vertices).subspan(begins[s], begins[s + 1] - begins[s]));
+  });
+  for (const std::vector<ContactTerm>& block : terms_of_block) terms.insert(terms.end(), block.begin(), block.end());
   return terms;
 }
 
