@@ -1,7 +1,6 @@
 #include "muslin/simulation/energy_account.hpp"
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 
 #include "muslin/core/parallel.hpp"
 
@@ -9,13 +8,6 @@ namespace muslin {
 namespace {
 
 constexpr std::size_t grain = 4096;
-
-/// Nodes and weights of Gauss–Legendre quadrature on [0, 1]: exact for polynomials of degree 5.
-struct Node {
-  double at, weight;
-};
-const std::array<Node, 3> gauss = {
-    {{0.5 - 0.5 * std::sqrt(0.6), 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + 0.5 * std::sqrt(0.6), 5.0 / 18}}};
 
 double dot(ConstVectors a, ConstVectors b) {
   return parallel_sum(a.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -25,25 +17,21 @@ double dot(ConstVectors a, ConstVectors b) {
   });
 }
 
-void clear(std::vector<Vec3>& vectors) { std::fill(vectors.begin(), vectors.end(), Vec3::Zero()); }
+bool is_implicit(Integrator integrator) {
+  return integrator == Integrator::implicit_euler || integrator == Integrator::bdf2;
+}
 
-/// The generalised force gᵢ with which the integrator lets a potential act: the gradient at the end of the
-/// step, its linearisation about the beginning, or the gradient at the beginning.
-void add_acting_gradient(const SolvedStep& step, const Potential& potential, ConstVectors displacement,
-                         Vectors g) {
-  switch (step.integrator) {
-    case Integrator::implicit_euler:
-    case Integrator::bdf2:
-      potential.add_gradient(step.after->positions, g);
-      return;
-    case Integrator::linearly_implicit_euler:
-      potential.add_gradient(step.before->positions, g);
-      potential.add_hessian_product(step.before->positions, displacement, g);
-      return;
-    case Integrator::symplectic_euler:
-      potential.add_gradient(step.before->positions, g);
-      return;
-  }
+/// Adds the generalised force gᵢ with which the integrator lets a potential act: the gradient at the end of the
+/// step, its linearisation about the beginning, or the gradient at the beginning. Returns what the potential
+/// stores at the end [J].
+double act_in(const SolvedStep& step, const ActingPotential& act, ConstVectors displacement, Vectors g) {
+  const Potential& potential = *act.potential;
+  const std::vector<Vec3>&before = step.before->positions, &after = step.after->positions;
+  const bool by_value = is_stored(act.role) && !act.after;
+  if (is_implicit(step.integrator) && by_value) return potential.add_gradient_and_value(after, g);
+  potential.add_gradient(is_implicit(step.integrator) ? after : before, g);
+  if (step.integrator == Integrator::linearly_implicit_euler) potential.add_hessian_product(before, displacement, g);
+  return by_value ? potential.value(after) : act.after.value_or(0);
 }
 
 }  // namespace
@@ -54,37 +42,23 @@ EnergyFlow energy_flow(const SolvedStep& step) {
   const State& after = *step.after;
   EnergyFlow flow;
 
-  std::vector<Vec3> displacement(count), g(count), total(count, Vec3::Zero()), point(count);
+  std::vector<Vec3> displacement(count), g(count), total(count, Vec3::Zero());
   parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) displacement[v] = after.positions[v] - before.positions[v];
   });
 
   for (const ActingPotential& act : step.acts) {
-    clear(g);
-    add_acting_gradient(step, *act.potential, displacement, g);
+    std::fill(g.begin(), g.end(), Vec3::Zero());
+    const double stored = act_in(step, act, displacement, g);
+    flow.stored.push_back(stored);
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) total[v] += g[v];
     });
     const double spent = dot(g, displacement);
     if (act.role == EnergyRole::work) {
       flow.work -= spent;
-    } else if (act.role == EnergyRole::dissipation) {
-      flow.dissipated += spent;
-    } else if (act.gain) {
-      flow.dissipated += spent - *act.gain;
     } else {
-      double stored = 0;
-      for (const Node& node : gauss) {
-        parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t v = begin; v < end; ++v) {
-            point[v] = before.positions[v] + node.at * displacement[v];
-            g[v].setZero();
-          }
-        });
-        act.potential->add_gradient(point, g);
-        stored += node.weight * dot(g, displacement);
-      }
-      flow.dissipated += spent - stored;
+      flow.dissipated += spent - (is_stored(act.role) ? stored - act.before : 0);
     }
   }
 

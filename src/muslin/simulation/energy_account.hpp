@@ -18,13 +18,16 @@
 
 namespace muslin {
 
+inline bool is_stored(EnergyRole role) { return role == EnergyRole::elastic || role == EnergyRole::potential; }
+
 /// A potential of the step, with its place in the balance.
 struct ActingPotential {
   EnergyRole role = EnergyRole::elastic;
   const Potential* potential = nullptr;
-  /// By how much the energy it stores has grown [J], where that is known by values: of contact, whose forces
-  /// begin within a step and whose lagged parts change between steps. The others are integrated.
-  std::optional<double> gain = std::nullopt;
+  /// Of roles that store energy: what it stores at the beginning of the step [J].
+  double before = 0;
+  /// What it stores at the end [J], where that is not its value there: contact lags some of its parts.
+  std::optional<double> after = std::nullopt;
 };
 
 /// A step that has been solved.
@@ -44,10 +47,10 @@ struct EnergyFlow {
   double work = 0;        ///< done by loads and by held vertices that moved
   double dissipated = 0;  ///< taken by damping and by the integrator (which may also give: then < 0)
   double unbalanced = 0;  ///< work of the forces at free vertices that the solver left out of balance
+  std::vector<double> stored;  ///< by each of the acts at the end; 0 of roles that store nothing
 };
 
-/// The flow of one step. The line integrals of stored energies are taken by quadrature of their gradients,
-/// not from their values, so that the balance of the values is a check and not an identity.
+/// The flow of one step.
 EnergyFlow energy_flow(const SolvedStep& step);
 
 double kinetic_energy(std::span<const double> masses, ConstVectors velocities);  ///< ½ Σ m |v|² [J]

@@ -5,11 +5,6 @@
 #include "muslin/simulation/fingerprint.hpp"
 
 namespace muslin {
-namespace {
-
-bool is_stored(EnergyRole role) { return role == EnergyRole::elastic || role == EnergyRole::potential; }
-
-}  // namespace
 
 std::vector<std::unique_ptr<Potential>> Terms::potentials_of_loads(const StepContext& context) const {
   std::vector<std::unique_ptr<Potential>> found;
@@ -47,32 +42,30 @@ void EnergyLedger::enter(const Terms& acting, SolvedStep step,
                          const ContactPotential* contact) {
   const std::vector<Vec3>&before = step.before->positions, &after = step.after->positions;
   std::vector<ActingPotential> acts;
-  std::size_t slot = 0;
-  for (const PotentialTerm& term : acting.potentials) {
-    ActingPotential act{term.role, term.potential.get()};
-    if (is_stored(term.role)) {
-      const double now = term.potential->value(after);
-      stored[slot] = now;
-    }
-    acts.push_back(act);
-    ++slot;
+  std::vector<std::size_t> slots;  // of the acts
+  for (std::size_t slot = 0; slot < acting.potentials.size(); ++slot) {
+    const PotentialTerm& term = acting.potentials[slot];
+    acts.push_back({term.role, term.potential.get(), stored[slot]});
+    slots.push_back(slot);
   }
-  for (std::size_t i = 0; i < loads.size(); ++i, ++slot) {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const std::size_t slot = acting.potentials.size() + i;
     const EnergyRole role = acting.role(slot);
-    if (loads[i]) acts.push_back({role, loads[i].get()});
-    if (!is_stored(role)) continue;
-    // A field that is switched or turned while a body is in it does work on the body.
-    const double begin = loads[i] ? loads[i]->value(before) : 0.0;
-    work += begin - stored[slot];
-    stored[slot] = loads[i] ? loads[i]->value(after) : 0.0;
+    if (is_stored(role)) {
+      // A field that is switched or turned while a body is in it does work on the body.
+      const double begin = loads[i] ? loads[i]->value(before) : 0.0;
+      work += begin - stored[slot];
+      stored[slot] = begin;
+    }
+    if (!loads[i]) continue;
+    acts.push_back({role, loads[i].get(), stored[slot]});
+    slots.push_back(slot);
   }
-  if (contact) {
-    const double now = contact->parts(after).normal;
-    acts.push_back({EnergyRole::elastic, contact, now - pressed});
-    pressed = now;
-  }
+  if (contact) acts.push_back({EnergyRole::elastic, contact, pressed, contact->parts(after).normal});
   step.acts = acts;
   const EnergyFlow flow = energy_flow(step);
+  for (std::size_t k = 0; k < slots.size(); ++k) stored[slots[k]] = flow.stored[k];
+  if (contact) pressed = flow.stored.back();
   work += flow.work;
   dissipated += flow.dissipated;
   unbalanced += flow.unbalanced;
