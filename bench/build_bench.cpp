@@ -2,13 +2,13 @@
 // on one thread. Time and peak memory after each stage, and what the surfaces that only the output needs, the
 // skin and the contour, take on top.
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "clock.hpp"
 #include "geometry/shapes.hpp"
+#include "memory.hpp"
 #include "support/simple_potentials.hpp"
 #include <benchmark/benchmark.h>
 
@@ -23,14 +23,6 @@
 
 namespace muslin::bench {
 namespace {
-
-/// Most memory that the process ever had [B].
-double peak_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.rfind("VmHWM:", 0) == 0) return 1024 * std::stod(line.substr(6));
-  return 0;
-}
 
 void build(benchmark::State& state, double width) {
   set_thread_count(1);

@@ -1,5 +1,6 @@
 // Whole runs of cloth in contact: a drop onto a ball, a sheet that folds up on a floor, one that hangs from
-// two corners. Times are of frames at 60 Hz; nothing but the engine is timed.
+// two corners, fifty sheets that fall on each other. Times are of frames at 60 Hz; nothing but the engine is
+// timed.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "clock.hpp"
+#include "memory.hpp"
 #include "support/contact_scene.hpp"
 #include <benchmark/benchmark.h>
 
@@ -211,6 +213,53 @@ void accuracy(benchmark::State& state, int n, Effort effort) {
   set_thread_count(0);
 }
 
+/// Fifty sheets of 1 m, each turned a little more than the one below and 1 cm above it, fall on each other and on a
+/// floor: `side`² vertices each.
+void layers(benchmark::State& state, int side, int threads) {
+  set_thread_count(threads);
+  constexpr int sheets = 50, shown = 12;
+  test::ContactScene scene;
+  scene.model.scene.time.steps_per_frame = {};
+  scene.model.scene.solver = with(Effort::normal);
+  scene.add_plane(Vec3::Zero(), Vec3(0, 1, 0));
+  for (int k = 0; k < sheets; ++k) {
+    test::ClothGrid cloth(side, side, 1.0 / (side - 1));
+    const double angle = 0.12 * k;
+    for (Vec3& p : cloth.positions) {
+      const double x = p.x() - 0.5, z = p.z() - 0.5;
+      p = Vec3(std::cos(angle) * x - std::sin(angle) * z, 0.01 * (k + 1), std::sin(angle) * x + std::cos(angle) * z);
+    }
+    scene.add_cloth(cloth);
+  }
+  const auto model = scene.finish();
+  double total = 0, steps = 0, missed = 0, newton = 0, linear = 0;
+  std::size_t crossings = 0;
+  for (auto _ : state) {
+    Simulation simulation(model);
+    for (int f = 0; f < shown; ++f) {
+      const bench::Clock clock;
+      simulation.advance();
+      total += clock.seconds();
+      const Diagnostics& row = simulation.diagnostics();
+      steps += row.steps;
+      missed += row.steps - row.converged_steps;
+      newton += row.newton_iterations;
+      linear += row.linear_iterations;
+    }
+    crossings = find_crossings(*model->contact, simulation.state().positions).size();
+    state.SetIterationTime(total);
+  }
+  state.counters["vertices"] = sheets * side * side;
+  state.counters["s_a_step"] = total / steps;
+  state.counters["steps"] = steps;
+  state.counters["missed"] = missed;
+  state.counters["newton"] = newton / steps;
+  state.counters["linear"] = linear / steps;
+  state.counters["crossings"] = static_cast<double>(crossings);
+  state.counters["peak_GB"] = 1e-9 * bench::peak_memory();
+  set_thread_count(0);
+}
+
 void add(const std::string& name, Settings settings) {
   const std::string& effort = name_of(effort_names(), settings.effort);
   benchmark::RegisterBenchmark(
@@ -237,6 +286,16 @@ int main(int argc, char** argv) {
   }
   for (const int threads : {1, 2}) add("hang", {Case::hang, 400, Effort::normal, threads});
   for (const int n : {50, 100, 200}) add("drop", {Case::drop, n, Effort::draft, 1});
+  for (const int side : {22, 45}) {
+    for (const int threads : {1, 2}) {
+      benchmark::RegisterBenchmark(
+          ("layers_" + std::to_string(side) + "/normal/threads:" + std::to_string(threads)).c_str(),
+          [side, threads](benchmark::State& state) { layers(state, side, threads); })
+          ->Iterations(1)
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
   // The other efforts are measured against this one.
   add("drop", {Case::drop, 50, Effort::exact, 1});
   for (const Effort effort : {Effort::draft, Effort::normal, Effort::exact}) {
