@@ -9,7 +9,7 @@ import muslin
 
 def test_steps_are_automatic_unless_a_number_is_given():
     scene = muslin.make_scene(flag_tables(time={"duration": 1}))
-    assert (scene.steps_per_frame, scene.effort, scene.tolerance) == (None, "normal", 0.1)
+    assert (scene.steps_per_frame, scene.effort, scene.tolerance) == (None, "normal", 0.2)
     assert scene.resolved["time"]["steps_per_frame"] == "auto"
     for steps, expected in (("auto", None), (7, 7)):
         scene = muslin.make_scene(flag_tables(time={"steps_per_frame": steps}, solver={"effort": "exact"}))

@@ -277,7 +277,7 @@ TEST_F(ModelTest, IsDescribedAsJsonAndText) {
   EXPECT_THAT(text, HasSubstr("349 edge, 256 face diagonal, 60 body diagonal"));
   EXPECT_THAT(text, HasSubstr("pin p: 1 held vertex"));
   EXPECT_THAT(text, HasSubstr("2 s in 48 frames, steps as the motion needs them, of at most 0.04167 s, by "
-                              "implicit_euler, effort normal, tolerance 0.1"));
+                              "implicit_euler, effort normal, tolerance 0.2"));
   const Model fixed = build(body("box.obj", "[time]\nsteps_per_frame = 10\n"));
   EXPECT_EQ(nlohmann::json::parse(describe_json(fixed))["time"]["steps"], 480);
   EXPECT_THAT(describe_text(fixed), HasSubstr("2 s in 48 frames, 480 steps of 0.004167 s by implicit_euler"));

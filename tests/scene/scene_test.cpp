@@ -46,7 +46,7 @@ TEST(Scene, DefaultsFillWhatIsNotWritten) {
   EXPECT_FALSE(scene.time.steps_per_frame) << "automatic";
   EXPECT_EQ(scene.solver.integrator, Integrator::implicit_euler);
   EXPECT_EQ(scene.solver.effort, Effort::normal);
-  EXPECT_EQ(scene.solver.error_tolerance(), 0.1);
+  EXPECT_EQ(scene.solver.error_tolerance(), 0.2);
   ASSERT_EQ(scene.bodies.size(), 1u);
   const BodySettings& body = scene.bodies.front();
   EXPECT_EQ(body.lattice.rule, VoxelRule::cover);
@@ -187,7 +187,7 @@ TEST(Scene, ResolvedJsonHoldsEverySettingWithItsDefault) {
   const auto json = nlohmann::json::parse(parse(flag_body + "[[force]]\ntype = 'gravity'\n").resolved);
   EXPECT_EQ(json["time"]["steps_per_frame"], "auto");
   EXPECT_EQ(json["solver"]["effort"], "normal");
-  EXPECT_EQ(json["solver"]["tolerance"], 0.1);
+  EXPECT_EQ(json["solver"]["tolerance"], 0.2);
   EXPECT_EQ(json["body"][0]["thickness"], 1.0);
   EXPECT_EQ(json["body"][0]["material"]["edge_modulus"], 20000);
   EXPECT_EQ(json["force"][0]["acceleration"][1], -9.8);
@@ -207,7 +207,7 @@ TEST(Scene, StepsAreANumberOrAutomatic) {
 }
 
 TEST(Scene, EveryEffortHasItsTolerance) {
-  for (const auto& [name, tolerance] : {std::pair{"draft", 0.3}, {"normal", 0.1}, {"exact", 1e-3}})
+  for (const auto& [name, tolerance] : {std::pair{"draft", 1.0}, {"normal", 0.2}, {"exact", 1e-3}})
     EXPECT_EQ(parse(std::string("[solver]\neffort = '") + name + "'\n" + flag_body).solver.error_tolerance(),
               tolerance);
 }

@@ -41,7 +41,7 @@ struct SolverSettings {
 
   double error_tolerance() const {
     if (tolerance) return *tolerance;
-    return effort == Effort::draft ? 0.3 : effort == Effort::normal ? 0.1 : 1e-3;
+    return effort == Effort::draft ? 1 : effort == Effort::normal ? 0.2 : 1e-3;
   }
 };
 

@@ -8,8 +8,10 @@
 namespace muslin {
 namespace {
 
-/// Error of one vertex over that of its part.
-constexpr double local_share = 0.1;
+/// A vertex may be off by what is allowed of its part divided by this.
+constexpr double local_share = 0.03;
+/// M⁻¹ g bounds the error only where potentials are convex: it has to be this share of what is allowed.
+constexpr double bound_share = 0.1;
 /// The share of an edge that is always good enough.
 constexpr double smallest = 1e-14;
 /// Work of the residual, as a share of what moves, over the tolerance: what correct_work can take out.
@@ -58,7 +60,7 @@ bool StepError::bound(ConstVectors x, ConstVectors g) {
     if (!(parts_[p].mass > 0)) continue;
     const double error = std::sqrt(squares[p] / parts_[p].mass);
     largest_ = std::max(largest_, error);
-    good = good && error <= local_share * parts_[p].allowed;
+    good = good && error <= bound_share * parts_[p].allowed;
   }
   return good;
 }

@@ -6,7 +6,7 @@
 // the norm of the preconditioner, or the length of s over that of the last motion, whichever is less. The
 // latter counts only if s is as long as what the preconditioner alone foretells: a system that was not solved
 // for this part gives a short s as well. Bodies are judged part by part, so that a heavy one does not hide a
-// light one: the root mean square over the masses of a part, and a tenth of the largest error of its vertices.
+// light one: the root mean square over the masses of a part, and 0.03 of the largest error of its vertices.
 //
 // Allowed are tolerance · min(a dt², h): h the mean edge of the part, a the larger of the acceleration that
 // loads give it and of what it is accelerated by in this step (root mean squares).
