@@ -85,27 +85,39 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
                 "give #V positions");
   std::vector<Vec3> start_buffer;
   const ConstVectors x_start = points(start, start_buffer);
-  for (const MergedContact& contact : contacts_) {
-    if (!(contact.slope < 0) || contact.key == 0) continue;
-    const double coefficient =
-        surface_->friction(contact.points[0], contact.points[static_cast<std::size_t>(contact.first_size)],
-                           friction.coefficient);
-    if (!(coefficient > 0)) continue;
+  struct Made {
     Rub rub;
-    rub.contact = contact;
-    rub.limit = -coefficient * contact.slope;
-    rub.weights = contact.weights;
     Carried carried;
-    carry(rub, lagged_, lagged, carried);
-    rub.begin = combined(contact, rub.weights, x_start);
-    for (const SurfaceMap::Entry& e : carried.span())
-      rub.begin += e.weight * start[static_cast<std::size_t>(e.vertex)];
-    if (carried.count > 0) {
-      rub.carried = static_cast<int>(carried_.size());
-      carried_.push_back(carried);
+  };
+  std::vector<std::vector<Made>> made((contacts_.size() + grain - 1) / grain);
+  parallel_for(contacts_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const MergedContact& contact = contacts_[i];
+      if (!(contact.slope < 0) || contact.key == 0) continue;
+      const double coefficient =
+          surface_->friction(contact.points[0], contact.points[static_cast<std::size_t>(contact.first_size)],
+                             friction.coefficient);
+      if (!(coefficient > 0)) continue;
+      Made& one = made[begin / grain].emplace_back();
+      Rub& rub = one.rub;
+      rub.contact = contact;
+      rub.limit = -coefficient * contact.slope;
+      rub.weights = contact.weights;
+      carry(rub, lagged_, lagged, one.carried);
+      rub.begin = combined(contact, rub.weights, x_start);
+      for (const SurfaceMap::Entry& e : one.carried.span())
+        rub.begin += e.weight * start[static_cast<std::size_t>(e.vertex)];
+      rub.begin -= tangential(known_slip(*surface_, contact.key, slips), contact.normal);
     }
-    rub.begin -= tangential(known_slip(*surface_, contact.key, slips), contact.normal);
-    rubs_.push_back(rub);
+  });
+  for (std::vector<Made>& block : made) {
+    for (Made& one : block) {
+      if (one.carried.count > 0) {
+        one.rub.carried = static_cast<int>(carried_.size());
+        carried_.push_back(one.carried);
+      }
+      rubs_.push_back(one.rub);
+    }
   }
 }
 
@@ -178,8 +190,12 @@ ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
     }
     return part;
   });
-  for (const Rub& rub : rubs_)
-    sum.friction += rub.limit * friction_law(slip(rub, x, q).norm(), friction_.stick_length).value;
+  sum.friction = parallel_sum(rubs_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+    double part = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      part += rubs_[i].limit * friction_law(slip(rubs_[i], x, q).norm(), friction_.stick_length).value;
+    return part;
+  });
   return sum;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -256,6 +257,23 @@ MergedContact reduced(const ContactTerm& term, const PairGeometry& at) {
   return contact;
 }
 
+/// Pairs of vertices and triangles in the order of their vertices, then of their triangles.
+std::vector<int> by_features(std::span<const ContactPair> pairs, std::vector<int> found, std::size_t point_count) {
+  const auto pair_of = [&](int i) -> const ContactPair& { return pairs[static_cast<std::size_t>(i)]; };
+  std::vector<std::size_t> begins(point_count + 1, 0);
+  for (const int i : found) ++begins[static_cast<std::size_t>(pair_of(i).first) + 1];
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  std::vector<int> sorted(found.size());
+  std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
+  for (const int i : found) sorted[next[static_cast<std::size_t>(pair_of(i).first)]++] = i;
+  for (std::size_t v = 0; v < point_count; ++v) {
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begins[v]),
+              sorted.begin() + static_cast<std::ptrdiff_t>(begins[v + 1]),
+              [&](int i, int j) { return pair_of(i).second < pair_of(j).second; });
+  }
+  return sorted;
+}
+
 /// What two features touch with.
 struct TouchingPoints {
   int first_size;
@@ -303,44 +321,43 @@ PairGeometry term_geometry(const ContactSurface& surface, const ContactTerm& ter
 std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt) {
   const ContactSurface& surface = distances.candidates().surface();
   const std::span<const ContactPair> pairs = distances.candidates().pairs();
-  const std::size_t blocks = (pairs.size() + grain - 1) / grain;
-  std::vector<std::vector<int>> near_of_block(blocks);
+  struct Block {
+    std::vector<ContactTerm> terms;
+    std::vector<int> of_vertices;  // pairs
+  };
+  std::vector<Block> blocks((pairs.size() + grain - 1) / grain);
   parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+    Block& block = blocks[begin / grain];
     for (std::size_t i = begin; i < end; ++i) {
-      if (distances.is_known(i) &&
-          is_near(distances[i].distance - pairs[i].thickness, pairs[i].range))
-        near_of_block[begin / grain].push_back(static_cast<int>(i));
-    }
-  });
-  std::vector<ContactTerm> terms;
-  std::vector<int> of_vertices;
-  for (const std::vector<int>& block : near_of_block) {
-    for (const int i : block) {
-      const ContactPair& pair = pairs[static_cast<std::size_t>(i)];
+      const ContactPair& pair = pairs[i];
+      if (!distances.is_known(i) || !is_near(distances[i].distance - pair.thickness, pair.range)) continue;
       if (pair.kind == PairKind::vertex_triangle) {
-        of_vertices.push_back(i);
+        block.of_vertices.push_back(static_cast<int>(i));
         continue;
       }
       const double stiffness =
           surface.stiffness(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)], dt);
       if (pair.kind == PairKind::point_plane) {
-        terms.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness,
-                         pair.range, stiffness});
+        block.terms.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness,
+                               pair.range, stiffness});
         continue;
       }
-      const double factor =
-          edge_factor(surface, pair, distances[static_cast<std::size_t>(i)], distances.points());
+      const double factor = edge_factor(surface, pair, distances[i], distances.points());
       const double range = range_of(surface, pair, distances.points());
       if (factor > 0 && range > 0) {
-        terms.push_back({ContactTerm::Kind::edge_edge, pair.points, -1, pair.key(), pair.thickness,
-                         range, factor * stiffness});
+        block.terms.push_back({ContactTerm::Kind::edge_edge, pair.points, -1, pair.key(), pair.thickness, range,
+                               factor * stiffness});
       }
     }
+  });
+  std::vector<ContactTerm> terms;
+  std::vector<int> found;
+  for (const Block& block : blocks) {
+    terms.insert(terms.end(), block.terms.begin(), block.terms.end());
+    found.insert(found.end(), block.of_vertices.begin(), block.of_vertices.end());
   }
   const auto pair_of = [&](int i) -> const ContactPair& { return pairs[static_cast<std::size_t>(i)]; };
-  std::sort(of_vertices.begin(), of_vertices.end(), [&](int i, int j) {
-    return std::pair(pair_of(i).first, pair_of(i).second) < std::pair(pair_of(j).first, pair_of(j).second);
-  });
+  const std::vector<int> of_vertices = by_features(pairs, std::move(found), distances.points().size());
   // A vertex meets the triangles of one body as one surface; another body is another contact.
   std::vector<std::size_t> begins;
   for (std::size_t k = 0; k < of_vertices.size(); ++k) {
