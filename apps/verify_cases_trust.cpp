@@ -313,6 +313,42 @@ keyframes = [{ time = 0 }, { time = 0.1, translate = [0, -1000, 0] }]
           {"energy over that of cloth as fast as the ball", 0, energy_over(struck, 6, carried), 10, false}};
 }
 
+std::vector<Comparison> rigid_impact() {
+  const Experiment experiment;
+  std::vector<Comparison> numbers;
+  for (const char* integrator : {"implicit_euler", "bdf2"}) {
+    Simulation simulation = experiment.start(fmt::format(R"(
+[solver]
+integrator = "{}"
+[[collider]]
+name = "box"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+center = [0, 0.3, 0]
+rotate = [10, 20, 30]
+density = 20
+[[collider]]
+name = "ball"
+shape = "sphere"
+radius = 0.1
+center = [0.03, 0.7, 0]
+density = 11000
+[[collider]]
+name = "floor"
+shape = "plane"
+)",
+                                                         integrator) +
+                                             weight);
+    Watch watch(simulation);
+    watch.advance(simulation, 24);
+    numbers.push_back({fmt::format("energy gained over energy of the fall, {}", integrator), 0,
+                       watch.gained() / watch.fallen(), 1e-3, false});
+    numbers.push_back({fmt::format("work from outside [J], {}", integrator), 0, simulation.diagnostics().work, 1e-9,
+                       false});
+  }
+  return numbers;
+}
+
 }  // namespace
 
 std::vector<VerifyCase> trust_cases() {
@@ -333,6 +369,8 @@ std::vector<VerifyCase> trust_cases() {
        "promise", true, step_choice},
       {"trust-held-back", "a pin that pulls cloth through a wall is held back and reported", "promise", false,
        held_back},
+      {"trust-rigid-impact", "a ball of lead that falls on a box of foam brings no energy", "second law", false,
+       rigid_impact},
       {"trust-absurd", "what no one means ends in an error or in a finite result", "promise", true, absurd},
   };
   const std::vector<VerifyCase> motion = trust_motion_cases();

@@ -4,7 +4,7 @@
 
 namespace muslin {
 
-/// Contact stops the mass of a rigid body within it, rigid bodies are as stiff as a step of it asks for, and
+/// Contact stops the mass of a rigid body within it, rigid bodies are as stiff as steps of it ask for, and
 /// under contact a step may be wrong by a share of what loads move a body by in it [s].
 inline constexpr double stopping_time = 1.0 / 240;
 

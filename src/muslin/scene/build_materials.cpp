@@ -137,31 +137,18 @@ class BodyMaterial {
   std::vector<Mat3> stiffness_;
 };
 
-/// In units of mass/step²: distortions swing at √1000 = 32 radians a step, and a body that is accelerated by
-/// g through a point of its surface is dented there by about 5 g step²/1000, 1 µm at steps of 1/240 s. Longer
-/// steps keep the rigidity of these: what rests on friction would slip by a dent whenever their length changes.
+/// In units of mass/stopping_time²: a body that is accelerated by g through a point of its surface is dented
+/// there by about 5 g stopping_time²/1000, 1 µm. The same in steps of any length: stiffness that grew while a
+/// body is dented would add energy.
 constexpr double rigidity = 1000;
 
-class Rigidity : public Load {
- public:
-  Rigidity(const Vec3& radii, double stiffness) : radii_(radii), stiffness_(stiffness) {}
-  std::unique_ptr<Potential> potential(const StepContext& step) const override {
-    const double length = std::min(step.length, stopping_time);
-    return std::make_unique<AffineBodyEnergy>(radii_, stiffness_ / (length * length));
-  }
-
- private:
-  Vec3 radii_;
-  double stiffness_;  ///< in steps of 1 s
-};
-
 void add_rigidity(Model& model, const Body& body) {
-  const auto first = static_cast<std::size_t>(body.first_vertex),
-             count = static_cast<std::size_t>(body.vertex_count);
-  model.loads.push_back(
-      {body.name + ": rigidity", EnergyRole::elastic,
-       std::make_shared<RestrictedLoad>(
-           std::make_shared<Rigidity>(body.frame.radii, rigidity * body.statistics.mass), first, count)});
+  const double stiffness = rigidity * body.statistics.mass / (stopping_time * stopping_time);
+  model.potentials.push_back({body.name + ": rigidity", EnergyRole::elastic,
+                              std::make_shared<RestrictedPotential>(
+                                  std::make_shared<AffineBodyEnergy>(body.frame.radii, stiffness),
+                                  static_cast<std::size_t>(body.first_vertex),
+                                  static_cast<std::size_t>(body.vertex_count))});
 }
 
 }  // namespace
