@@ -13,6 +13,19 @@ constexpr double stable_steps = 150;
 /// The longest step of a rigid body in single precision [s]; its stiffness is that of build_materials.cpp.
 constexpr double longest_rigid = 1.0 / 16;
 
+/// Rigid bodies bend nowhere: how far one falls in a step matters beside what moves with it, however small it is
+/// itself.
+void give_rigid_bodies_the_largest_size(const Model& model, ModelParts& parts) {
+  double largest = 0;
+  const auto part_of = [&](const Body& body) {
+    return static_cast<std::size_t>(parts.of_vertex[static_cast<std::size_t>(body.first_vertex)]);
+  };
+  for (const Body& body : model.bodies)
+    if (!body.prescribed) largest = std::max(largest, parts.sizes[part_of(body)]);
+  for (const Body& body : model.bodies)
+    if (body.is_rigid() && !body.prescribed) parts.sizes[part_of(body)] = largest;
+}
+
 class Joined {
  public:
   explicit Joined(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0); }
@@ -87,6 +100,7 @@ ModelParts find_parts(const Model& model) {
     // Neighbours of a rigid frame are its corners; of a part without a body nothing is known.
     if (!(parts.edges[p] > 0)) parts.edges[p] = parts.sizes[p] > 0 ? parts.sizes[p] / 10 : 1;
   }
+  give_rigid_bodies_the_largest_size(model, parts);
   return parts;
 }
 
