@@ -240,6 +240,24 @@ TEST(ImplicitEuler, ATargetBeyondWhatAPotentialAllowsFailsWithAReason) {
   EXPECT_EQ(flag.state.positions, before.positions);
 }
 
+TEST(ImplicitEuler, EndsAtOnceWhereFloatLosesTheMassesAndShorterStepsMayNot) {
+  for (const bool in_double : {true, false}) {
+    test::Flag flag;
+    flag.hold_top_corners();
+    StepProblem problem = flag.problem();
+    problem.in_double = in_double;
+    const StepReport report =
+        solve_step({}, step_context(Integrator::implicit_euler, flag.state, 60), problem, flag.state);
+    EXPECT_TRUE(report.made());
+    if (in_double) {
+      EXPECT_GT(report.newton_iterations, 0);
+    } else {
+      EXPECT_FALSE(report.converged);
+      EXPECT_EQ(report.newton_iterations, 0);
+    }
+  }
+}
+
 /// A potential that is never a number.
 class Cliff : public test::Wells {
  public:

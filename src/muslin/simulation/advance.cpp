@@ -45,6 +45,7 @@ class Advance {
         driving_accelerations(model_, terms_, loads, before.positions, scratch_);
     StepProblem problem{scratch_.masses, {}, scratch_.fixed, scratch_.targets, guard_, model_.rest_positions,
                         scratch_.parts.of_vertex, accelerations, scratch_.parts.edges};
+    problem.in_double = halvings >= patience();
     for (const PotentialTerm& term : terms_.potentials) problem.potentials.push_back(term.potential.get());
     for (const auto& load : loads)
       if (load) problem.potentials.push_back(load.get());

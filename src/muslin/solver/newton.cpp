@@ -176,6 +176,7 @@ class Newton {
       const Stopwatch watch(report_.linearize_seconds);
       inner_.linearize(full(), x_);
     }
+    if (!problem_.in_double && !inner_.fits_float()) return done(false);
     if (report_.newton_iterations == 0) forcing_ = loosest();
     if (imbalance_.largest <= function_.rounding_floor(x_, inner_.stiffest())) return done(true);
     ++report_.newton_iterations;

@@ -1,4 +1,4 @@
-// Time stepping: one step of an integrator over masses, potentials and held vertices.
+// Stepper advances masses, potentials and held vertices by steps of an integrator.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ enum class Integrator {
   symplectic_euler,         ///< explicit, first order, conserves; stable only for small steps
 };
 
-/// How accurately a step of implicit_euler or bdf2 is solved.
+/// Accuracy to which a step of implicit_euler or bdf2 is solved.
 enum class Effort {
   draft,   ///< to see whether a scene works
   normal,  ///< for pictures
@@ -33,9 +33,9 @@ enum class Effort {
 struct SolverSettings {
   Integrator integrator = Integrator::implicit_euler;
   Effort effort = Effort::normal;
-  /// A step is done when the estimate of its error, as motion, is at most this share of the motion that the
-  /// accelerations at work cause in a step: error ≤ tolerance · a · dt² in every part, and no more than that
-  /// share of an edge. None: that of `effort`.
+  /// A step has converged when its error estimate, as a displacement, is at most this share of the
+  /// displacement that the acting accelerations cause in a step: error ≤ tolerance · a · dt² in every part,
+  /// and at most that share of an edge. None: that of `effort`.
   std::optional<double> tolerance;
   double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
 
@@ -45,21 +45,24 @@ struct SolverSettings {
   }
 };
 
-/// One step's problem. `fixed[v]` is 1 where vertex v is held: it ends the step at targets[v], or, where a
-/// guard does not let it, as near as it comes.
+/// One step's problem. `fixed[v]` is 1 where vertex v is held: it ends the step at targets[v], or as near as
+/// the guard allows.
 struct StepProblem {
   std::span<const double> masses;            ///< #V [kg]
   std::vector<const Potential*> potentials;  ///< all that act during this step
   std::span<const std::uint8_t> fixed;       ///< #V
   ConstVectors targets;                      ///< #V by 3 [m], read only where fixed
-  StepGuard* guard = nullptr;                ///< whom to ask before anything moves; none if null
-  /// #V by 3 [m], the same from step to step: what is near each other here moves alike. Without them no
-  /// coarse space helps to solve for the smooth part of the motion.
+  StepGuard* guard = nullptr;                ///< limits all motions; null: none
+  /// #V by 3 [m], constant: vertices near each other here move alike. Without them the solver has no coarse
+  /// space for the smooth part of the motion.
   ConstVectors rest_positions = {};
-  /// #V, the part of the model that each vertex belongs to, connected within; empty: all of one.
+  /// #V, the connected part of the model of each vertex; empty: a single part.
   std::span<const int> parts = {};
-  std::span<const double> accelerations = {};  ///< by part, root mean square of what loads cause [m/s²]
+  std::span<const double> accelerations = {};  ///< by part, root mean square due to loads [m/s²]
   std::span<const double> edges = {};          ///< by part, typical distance of neighbours [m]
+  /// Linear systems in which masses vanish beside stiffnesses in float are solved in double, slowly. If false,
+  /// such a step ends without an iteration, not converged: shorter steps may fit float.
+  bool in_double = true;
 };
 
 struct StepReport {
@@ -67,19 +70,19 @@ struct StepReport {
   int newton_iterations = 0;
   int linear_iterations = 0;
   double residual = 0;                              ///< max ‖∂E/∂xᵢ‖ / (mᵢ dt²) [m/s²]
-  double error = 0;                                 ///< estimate of how far from the minimum, as motion [m]
+  double error = 0;                                 ///< estimated distance from the minimum [m]
   int worst_vertex = -1;                            ///< where the residual is largest
-  int held_back = 0;                                ///< held vertices that a guard keeps from their targets
+  int held_back = 0;                                ///< held vertices kept from their targets by a guard
   double linearize_seconds = 0, solve_seconds = 0;  ///< spent under a guard on Hessians and linear systems
   std::string failure;                              ///< why the step could not be made, empty otherwise
 
   bool made() const { return failure.empty(); }
 };
 
-/// What loads must know before the step of length dt from `state`.
+/// Returns the data for loads before the step of length dt from `state`.
 StepContext step_context(Integrator integrator, const State& state, double dt);
 
-/// Advances states step by step. Keeps its vectors between steps, so that steps of one size allocate little.
+/// Advances states step by step. Keeps its vectors between steps to avoid allocations.
 class Stepper {
  public:
   Stepper();
@@ -88,11 +91,11 @@ class Stepper {
   Stepper& operator=(Stepper&&) noexcept;
 
   /// Advances `state` by one step. If the report says that it was not made, `state` is unchanged; it never
-  /// holds NaN. With a guard: symplectic_euler is refused (Error(usage)); linearly_implicit_euler goes where
-  /// its one iteration leads as far as the guard lets it.
+  /// holds NaN. With a guard: symplectic_euler is refused (Error(usage)); the one iteration of
+  /// linearly_implicit_euler is limited by the guard.
   StepReport step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                   State& state);
-  /// Memory held between steps.
+  /// Returns the memory held between steps.
   std::size_t bytes() const;
 
  private:
@@ -100,7 +103,7 @@ class Stepper {
   std::unique_ptr<Workspace> workspace_;
 };
 
-/// One step by a Stepper of its own.
+/// Advances one step with a temporary Stepper.
 StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                       State& state);
 
