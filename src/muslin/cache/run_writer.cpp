@@ -366,7 +366,9 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
     }
     run["bodies"].push_back(entry);
   }
-  run["warnings"] = model.warnings;
+  std::vector<std::string> warnings = model.warnings;
+  for (std::string& warning : warnings_of(quality)) warnings.push_back(std::move(warning));
+  run["warnings"] = warnings;
   if (simulation.options().allow_tangled) run["allow_tangled"] = true;
   run["scene"] = parsed_scene(model);
   run["machine"] = {{"processor", processor()},
