@@ -1,5 +1,5 @@
-// The commands of the program. Each adds its subcommand to the application; its work runs while the command
-// line is parsed, and errors leave as muslin::Error.
+// Declares the commands of the program. Each adds its subcommand to the application; its work runs while the
+// command line is parsed, and errors leave as muslin::Error.
 #pragma once
 
 #include <string>
@@ -18,14 +18,14 @@ void add_view(CLI::App& program);
 void add_materials(CLI::App& program);
 void add_verify(CLI::App& program);
 
-/// True once the user pressed Ctrl-C (or the process was asked to end).
+/// True once the user pressed Ctrl-C (or the process received a termination signal).
 bool interrupted();
 void listen_for_interrupts();
 
 /// Writes text to standard output. Errors: file, if it cannot be written (a full disk behind a redirection).
 void print(const std::string& text);
 
-/// Checks of option values that say what they want in words.
+/// Validators of option values; their messages state the requirement in words.
 CLI::Validator positive_number();
 CLI::Validator non_negative_number();
 CLI::Validator positive_integer();

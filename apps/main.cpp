@@ -19,11 +19,11 @@ namespace {
 volatile std::sig_atomic_t signalled = 0;
 
 void on_signal(int) {
-  if (signalled) std::_Exit(static_cast<int>(ErrorKind::interrupted));  // asked twice: at once
+  if (signalled) std::_Exit(static_cast<int>(ErrorKind::interrupted));  // second signal: exit at once
   signalled = 1;
 }
 
-/// What to do about a command line that CLI11 cannot make sense of.
+/// Advice for a command line that CLI11 cannot parse.
 std::string advice(const CLI::App& program, int argc, char** argv) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
   if (chosen.empty()) {

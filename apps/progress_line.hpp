@@ -1,4 +1,4 @@
-// One line on standard error that tells how far long work is and how long it will still take.
+// Shows the progress of long work and the time left on one line of standard error.
 #pragma once
 
 #include <chrono>

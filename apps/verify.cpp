@@ -22,7 +22,7 @@ std::string list() {
   return text;
 }
 
-/// The case of this name, or all cases whose names begin with it and a hyphen.
+/// Returns the case of this name, or all cases whose names begin with it and a hyphen.
 std::vector<VerifyCase> find_cases(const std::string& name) {
   std::vector<std::string> names;
   std::vector<VerifyCase> group;
@@ -45,7 +45,7 @@ std::string row(const VerifyCase& c, const Comparison& number) {
       fmt::format("{:.2g}{}", scale * number.tolerance, unit), number.passed() ? "pass" : "FAIL", c.source);
 }
 
-/// What the case finds; a run that the solver gives up says so in a row and counts as one that is off.
+/// Returns the comparisons of the case; a run that the solver aborts gives one failed comparison.
 std::vector<Comparison> find(const VerifyCase& c) {
   try {
     return c.run();
@@ -55,7 +55,7 @@ std::vector<Comparison> find(const VerifyCase& c) {
   }
 }
 
-/// The number of comparisons that failed.
+/// Returns the number of comparisons that failed.
 int verify(const std::vector<VerifyCase>& cases) {
   print(fmt::format("{:<26} {:<44} {:>12} {:>12} {:>10} {:>10}  {}  {}\n", "test", "quantity", "reference",
                     "measured", "deviation", "tolerance", "    ", "source"));

@@ -1,4 +1,5 @@
-// The cases of `muslin verify`: physics with a known answer, run through the library as a user would.
+// Declares the cases of `muslin verify`: physics with a known answer, run through the library as a user
+// would.
 #pragma once
 
 #include <functional>
@@ -16,12 +17,12 @@ struct Comparison {
   bool relative = true;  ///< deviation and tolerance are shares of |reference|, else in its unit
 
   double deviation() const;
-  bool passed() const;  ///< false also for what is not a number
+  bool passed() const;  ///< false also for NaN
 };
 
 struct VerifyCase {
   std::string name;
-  std::string claim;   ///< what it shows, one sentence
+  std::string claim;   ///< one sentence
   std::string source;  ///< of the reference values
   bool slow = false;   ///< takes more than about a second
   std::function<std::vector<Comparison>()> run;
@@ -30,7 +31,7 @@ struct VerifyCase {
 /// All cases, in the order they are run. Names are unique.
 const std::vector<VerifyCase>& verify_cases();
 
-/// What the files of cases add to the list.
+/// Return the cases of each source file.
 std::vector<VerifyCase> stepping_cases();
 std::vector<VerifyCase> motion_cases();
 std::vector<VerifyCase> elasticity_cases();

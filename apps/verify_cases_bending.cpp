@@ -65,7 +65,7 @@ double measured_rigidity(const Experiment& experiment, const Strip& strip) {
 
 /// The strip's rigidity over E I of a solid one. Per unit of width and of k h^3, the layers of vertices and
 /// the gaps between them (where the strain across relaxes) add up to the plate rigidities D11 and D12; a
-/// strip with free edges curves across as it likes. docs/theory/lattice-moduli.md.
+/// strip with free edges curves freely across. docs/theory/lattice-moduli.md.
 double layered_rigidity(int n) {
   const double layers = (std::pow(n, 3) + 2 * n) / 12, gaps = (std::pow(n, 3) - n) / 12;
   const double d11 = 2 * layers + 2 * gaps / 3, d12 = layers - gaps / 3;

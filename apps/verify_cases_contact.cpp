@@ -1,5 +1,5 @@
-// Contact: nothing crosses in any step of the scenes under scenes/contact, whatever the threads, from starts
-// shaken at random; the same bits; no energy from nothing.
+// Contact: nothing crosses in any step of the scenes under scenes/contact, for any thread count, from
+// randomly perturbed starts; the same bits; no energy from nothing.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -21,8 +21,8 @@ std::filesystem::path scene_file(const std::string& name) {
   return file;
 }
 
-/// The scene, its start shaken: every free vertex of cloth and solids by up to a tenth of the contact distance,
-/// and pushed by up to 5 cm/s.
+/// The scene with its start perturbed: every free vertex of cloth and solids is displaced by up to a tenth of
+/// the contact distance and gets a velocity of up to 5 cm/s.
 std::shared_ptr<const Model> shaken(const std::string& name, unsigned seed) {
   auto model = std::make_shared<Model>(build_model(read_scene(scene_file(name))));
   std::vector<bool> free(model->vertex_count(), false);

@@ -85,7 +85,7 @@ type = "gravity"
 )",
                                                                             h, density, youngs, length));
   advance(simulation, 2);
-  // How far the section s below the held end has come down, on the axis of the bar.
+  // Downward displacement of the section s below the held end, on the axis of the bar.
   const auto sunk = [&](int layer) { return h * layer - position(simulation, 1, layer, 1).y(); };
   const auto theory = [&](double s) { return density * gravity * (length * s - s * s / 2) / youngs; };
   std::vector<Comparison> numbers;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double gravity = 9.8;
 
-/// A slope that rises towards −x, as a level floor under gravity that is turned.
+/// A slope that rises towards −x, modelled as a level floor under rotated gravity.
 std::string slope(double degrees, double friction, int frame_rate) {
   const double angle = degrees * std::numbers::pi / 180;
   return fmt::format(R"(
@@ -91,7 +91,7 @@ std::vector<Comparison> holds_on_a_slope() {
   return numbers;
 }
 
-/// The slope as two hundred triangles, whose edges what lies on it does not see.
+/// The slope as two hundred triangles, whose edges must not affect a body on it.
 const std::string ramp = R"(
 [[collider]]
 name = "ramp"
@@ -116,7 +116,7 @@ center = [0, 0.035, 0]
 density = 1000
 )";
 
-/// As scenes are solved that say nothing about it.
+/// Default solver settings.
 std::vector<Comparison> holds_by_default() {
   const std::vector<std::string> defaults = {"solver.tolerance=0.01", "time.steps_per_frame=auto"};
   std::vector<Comparison> numbers;
@@ -199,10 +199,10 @@ std::vector<Comparison> sticks_slips_and_sticks() {
   return numbers;
 }
 
-/// A level plane that turns by w: what lies on it stays on it until it has turned by atan μ, and is then slid
-/// g/(w² cos) (φ − sin φ) when it has turned by φ more; farther by about the share μφ/2, since the plane
-/// falls away beneath what moves (normal force less by 2 m w v). Before, it leans with the gap of the
-/// contact, by gap × angle.
+/// A level plane that turns by w: a body on it sticks until it has turned by atan μ, and has then slid g/(w²
+/// cos) (φ − sin φ) when it has turned by φ more; farther by about the share μφ/2, since the plane recedes
+/// beneath the moving body (normal force less by 2 m w v). Before, the body shifts with the contact gap, by
+/// gap × angle.
 std::vector<Comparison> slides_off_a_turning_plane() {
   constexpr double friction = 0.3, degrees_per_second = 3;
   const double speed = degrees_per_second * std::numbers::pi / 180, limit = std::atan(friction);

@@ -47,7 +47,7 @@ drag = 1.17
 /// A quarter of the period of a stiff bar that is let go at `degrees` from where it hangs [s].
 double quarter_period(const Experiment& experiment, double degrees, double& small_swing_quarter) {
   const double angle = degrees * std::numbers::pi / 180;
-  // The bar stands still along −y and gravity is turned, so that every angle has the same voxels.
+  // The bar is fixed along −y and gravity is rotated, so that every angle has the same voxels.
   Simulation simulation = experiment.start(fmt::format(R"(
 [time]
 frame_rate = 1000

@@ -1,4 +1,4 @@
-// Promises of the program: the same bits for any thread count, and after a stop.
+// Reproducibility: the same bits for any thread count, and after a stop and resume.
 #include <algorithm>
 
 #include "verify_case.hpp"

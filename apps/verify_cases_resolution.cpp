@@ -11,7 +11,7 @@ namespace {
 
 constexpr double side = 0.5;  // m
 
-/// What air and time would bring to rest, in less time: the shape at rest does not depend on damping.
+/// Damping that brings the cloth to rest sooner; the shape at rest does not depend on it.
 constexpr const char* setting = R"(
 [time]
 frame_rate = 24

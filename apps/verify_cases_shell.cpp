@@ -56,8 +56,8 @@ std::vector<Comparison> cantilever_shell() {
   const Experiment experiment;
   experiment.level_sheet("sheet.obj", 1, 0.25, cells);
   const double width = 1.0 / cells;
-  // Two rows are held. A hinge bends what lies half a square on either side of it, so the clamp is half a
-  // square before the second row.
+  // Two rows are held. A hinge bends half a square on either side of it, so the clamp is half a square before
+  // the second row.
   const double length = 1 - width / 2;
   std::vector<Comparison> numbers;
   struct Case {

@@ -1,4 +1,4 @@
-// Trust, where the answer is exact: momentum and fall of what is free, and what is far away changes nothing.
+// Trust, where the answer is exact: momentum and fall of free bodies; distant bodies have no effect.
 #include <algorithm>
 #include <cmath>
 #include <vector>

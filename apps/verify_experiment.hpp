@@ -1,5 +1,5 @@
-// What the cases of `muslin verify` are made of: a temporary folder with meshes, scenes written as text, and
-// short ways to lattice vertices.
+// Provides the building blocks of the cases of `muslin verify`: a temporary folder with meshes, scenes
+// written as text, and access to lattice vertices.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +25,7 @@ class Experiment {
   void level_sheet(const std::string& file, double x, double z, int cells) const {
     level_sheet(file, x, z, cells, cells);
   }
-  /// The same of `cells_x` by `cells_z` squares; vertex i + k (cells_x + 1).
+  /// The same with `cells_x` by `cells_z` squares; vertex i + k (cells_x + 1).
   void level_sheet(const std::string& file, double x, double z, int cells_x, int cells_z) const;
   /// Writes a ball about the origin [m]: `rings` rows of polygons from pole to pole, `segments` in each.
   void ball(const std::string& file, double radius, int segments, int rings) const;
@@ -44,12 +44,12 @@ class Experiment {
 
 void advance(Simulation& simulation, int frames);
 
-/// Centre of mass of the body or collider of this name [m], or how fast it moves [m/s].
+/// Returns the centre of mass [m] or its velocity [m/s] of the body or collider of this name.
 Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity = false);
 
-/// Index of vertex (i, j, k) of the only body's lattice.
+/// Returns the index of vertex (i, j, k) of the only body's lattice.
 std::size_t vertex(const Simulation& simulation, int i, int j, int k);
-/// Where it is [m].
+/// Returns the position of that vertex [m].
 Vec3 position(const Simulation& simulation, int i, int j, int k);
 
 /// Largest |x − y| over all vertices [m].
@@ -59,7 +59,7 @@ double largest_distance(ConstVectors x, ConstVectors y);
 double differing(const State& a, const State& b);
 
 /// The part of a scene that finds its static equilibrium: steps so long that inertia does not matter.
-/// `tolerance` is the share of an edge by which it may be wrong.
+/// `tolerance` is the allowed error as a share of an edge.
 std::string static_solve(double tolerance);
 
 }  // namespace muslin::app

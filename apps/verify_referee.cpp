@@ -24,7 +24,7 @@ double segment_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
   return least;
 }
 
-/// Whether a point lies over a triangle, and then how far from its plane.
+/// Returns whether a point lies over a triangle and, if so, its distance from the plane.
 double height_over(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
   const bool over = (b - a).cross(p - a).dot(n) >= 0 && (c - b).cross(p - b).dot(n) >= 0 &&

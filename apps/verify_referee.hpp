@@ -1,5 +1,5 @@
-// Whether anything crosses anything, found without the code of contact: the meshes of all bodies by the exact
-// test, balls, capsules and planes by their formulas.
+// Referee counts crossings independently of the contact code: the meshes of all bodies by the exact test,
+// balls, capsules and planes by their formulas.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ class Referee {
   /// Colliders and bodies with `contact = false` are left out.
   explicit Referee(std::shared_ptr<const Model> model);
 
-  /// Pairs of triangles that meet, and triangles that reach into a ball or capsule or beneath a plane, at q
-  /// (#V by 3, [m]). Colliders that do not move by themselves may cross one another, and what has
-  /// `self_contact = false` itself.
+  /// Counts pairs of triangles that meet, and triangles that reach into a ball or capsule or beneath a plane,
+  /// at q (#V by 3, [m]). Static and kinematic colliders may cross one another, bodies with `self_contact =
+  /// false` themselves.
   std::size_t crossings(ConstVectors q) const;
 
  private:
@@ -40,7 +40,7 @@ class Referee {
   bool may_touch(std::size_t body_a, std::size_t body_b) const;
 
   std::shared_ptr<const Model> model_;
-  // Of bodies with a mesh that touches; then an axis for each round one.
+  // Bodies with a mesh in contact; then an axis for each round one.
   std::vector<std::size_t> meshes_;
   std::vector<Vec3i> triangles_;
   std::vector<std::size_t> body_of_triangle_;

@@ -1,4 +1,4 @@
-// What a run shows from frame to frame: where its energy goes, and whether its steps converge.
+// Watch tracks the energy balance and the convergence of a run from frame to frame.
 #pragma once
 
 #include <limits>
@@ -11,11 +11,11 @@ namespace muslin::app {
 class Watch {
  public:
   explicit Watch(const Simulation& simulation);
-  /// To be called after every frame.
+  /// Records the current frame; call after every frame.
   void look(const Simulation& simulation);
   void advance(Simulation& simulation, int frames);
 
-  double gained() const { return gained_; }  ///< largest rise of the energy above what it was before [J]
+  double gained() const { return gained_; }  ///< largest rise of the energy above its earlier minimum [J]
   double gained_share() const { return gained_share_; }      ///< of the potential energy given up so far
   double balance_gained() const { return balance_gained_; }  ///< the same for Diagnostics::balance() [J]
   double fallen() const { return fallen_; }  ///< most potential energy given up since the start [J]

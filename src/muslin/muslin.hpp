@@ -1,4 +1,4 @@
-// The public façade: everything a program, a plug-in or a binding uses.
+// Includes the public interface: everything a program, a plug-in or a binding uses.
 #pragma once
 
 #include "muslin/cache/export.hpp"

@@ -1,4 +1,4 @@
-// The version of the library, MAJOR.MINOR.PATCH.
+// version() returns the version of the library, MAJOR.MINOR.PATCH.
 #pragma once
 
 namespace muslin {

@@ -1,4 +1,4 @@
-// One writer at a time.
+// DirectoryLock allows one writer of a directory at a time.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What other programs read, made from a run.
+// Exports a run to the file formats of other programs.
 #pragma once
 
 #include <filesystem>

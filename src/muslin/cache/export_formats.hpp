@@ -1,4 +1,4 @@
-// The formats of export_run that need more than a few lines.
+// Declares the writers of export_run for glTF, USD and VTK.
 #pragma once
 
 #include <filesystem>

@@ -30,7 +30,7 @@ struct SplitMesh {
 };
 
 SplitMesh split(const Mesh& mesh) {
-  // Triangulated with corners for vertices, so that every corner keeps its texture coordinate.
+  // Triangulates with corners as vertices, so that every corner keeps its texture coordinate.
   Mesh corners;
   corners.face_offsets = mesh.face_offsets;
   for (std::size_t c = 0; c < mesh.face_vertices.size(); ++c) {
@@ -61,7 +61,7 @@ SplitMesh split(const Mesh& mesh) {
   return result;
 }
 
-/// The document and its binary buffer, grown together.
+/// The document and its binary buffer, built together.
 class Document {
  public:
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "muslin " MUSLIN_VERSION}}}};

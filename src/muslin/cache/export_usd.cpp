@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A name USD accepts: letters, digits, underscores, no digit in front; unique among `taken`.
+/// Returns a valid USD name: letters, digits, underscores, no digit in front; unique among `taken`.
 std::string identifier(const std::string& name, std::set<std::string>& taken) {
   std::string result;
   for (char c : name) result += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

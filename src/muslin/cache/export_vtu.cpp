@@ -12,8 +12,8 @@
 namespace muslin {
 namespace {
 
-/// Largest principal stretch of a voxel: the largest singular value of the deformation gradient at its
-/// centre, 1 at rest. Columns of the gradient are means over the voxel's four edges along an axis.
+/// Returns the largest principal stretch of a voxel: the largest singular value of the deformation gradient
+/// at its centre, 1 at rest. Columns of the gradient are means over the voxel's four edges along an axis.
 float principal_stretch(const std::array<int, 8>& corners, const std::vector<Vec3>& rest,
                         const std::vector<Vec3f>& points) {
   Mat3 deformed = Mat3::Zero();
@@ -31,7 +31,7 @@ float principal_stretch(const std::array<int, 8>& corners, const std::vector<Vec
   return static_cast<float>(std::sqrt(std::max(0.0, squares.eigenvalues()[2])));
 }
 
-/// Largest principal stretch of a triangle against the first frame.
+/// Returns the largest principal stretch of a triangle against the first frame.
 float principal_stretch(const Vec3i& triangle, const std::vector<Vec3f>& rest,
                         const std::vector<Vec3f>& points) {
   const auto edge = [&](const std::vector<Vec3f>& x, int c) -> Vec3 {
@@ -50,7 +50,7 @@ float principal_stretch(const Vec3i& triangle, const std::vector<Vec3f>& rest,
   return static_cast<float>(std::sqrt(std::max(0.0, squares.eigenvalues()[1])));
 }
 
-/// What a body's grid is made of: voxels of a lattice or triangles of a shell.
+/// The cells of a body's grid: voxels of a lattice or triangles of a shell.
 struct Cells {
   VtkGrid grid;
   std::function<std::vector<Vec3f>(int)> points, velocities;  ///< at a frame

@@ -1,4 +1,4 @@
-// Point caches: one position per point and frame, for points whose number and order never change.
+// Reads and writes point caches: one position per point and frame, for points of fixed number and order.
 //
 // PC2 (little-endian): "POINTCACHE2\0", int32 version 1, int32 points, float32 start, float32 rate,
 // int32 samples, then per sample float32 xyz of every point. start = 0, rate = 1: one sample a frame.
@@ -18,7 +18,7 @@ namespace muslin {
 /// Single precision, as caches store it.
 using Vec3f = Eigen::Vector3f;
 
-/// Writes a PC2 file sample by sample; its header never promises a sample that is not there.
+/// Writes a PC2 file sample by sample; its header never counts a sample that is not yet written.
 class Pc2Writer {
  public:
   Pc2Writer() = default;

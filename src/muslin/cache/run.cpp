@@ -16,7 +16,7 @@
 namespace muslin {
 namespace {
 
-/// Time left at the mean pace of the frames of this session.
+/// Returns the time left at the mean pace of this session's frames.
 class Pace {
  public:
   explicit Pace(double from) : from_(from) {}
@@ -51,7 +51,7 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     if (options.report) options.report(now);
   };
   const auto model = std::make_shared<const Model>(build_model(scene, building));
-  // Before the start is looked at: other bodies may cross where those of the run did not.
+  // Checked before the start: other bodies may cross where those of the run did not.
   if (options.resume && is_run(options.directory) && !list_checkpoints(options.directory).empty())
     changes_since(options.directory, *model);
   const bool tangled = options.allow_tangled || (options.resume && is_tangled_run(options.directory));

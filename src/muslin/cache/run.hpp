@@ -1,4 +1,4 @@
-// A scene from its file to its run directory: what `muslin run` does.
+// Runs a scene from its file to its run directory, as `muslin run` does.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +16,17 @@ struct RunProgress {
   int total = 0;            ///< last frame of the run
   double fraction = 0;      ///< of the whole run, or of the stage while building
   double seconds_left = 0;  ///< estimate from the frames so far; NaN before there is one
-  std::string stage;        ///< what is being done: "distance field", "simulation", …
+  std::string stage;        ///< current stage: "distance field", "simulation", …
 };
 
 struct RunOptions {
-  std::filesystem::path directory;     ///< where the run goes
+  std::filesystem::path directory;     ///< output directory of the run
   std::vector<std::string> overrides;  ///< KEY=VALUE, as read_scene takes them
   int frames = -1;                     ///< last frame; −1: as the scene says
-  bool resume = false;                 ///< go on from the last checkpoint, if there is one
-  int resume_from = -1;  ///< with `resume`: go back to this frame and on from there; −1: the last
-  /// Start although surfaces cross, which are free until they part. A run remembers it: it need not be said
-  /// again to resume.
+  bool resume = false;                 ///< continue from the last checkpoint, if any
+  int resume_from = -1;                ///< with `resume`: continue from this frame; −1: the last
+  /// Start although surfaces cross; these are not in contact until they part. The setting is stored in the
+  /// run and applies on resume.
   bool allow_tangled = false;
   bool keep_states = false;  ///< keep the checkpoint of every frame, so that any can be resumed from
   /// Called after each stage, step and frame, from the calling thread.
@@ -40,7 +40,7 @@ struct RunResult {
   int first_frame = 0;                ///< 0, or the frame that was resumed from
   int last_frame = 0;                 ///< the last one written
   std::vector<std::string> changes;   ///< settings changed since the run that was resumed
-  std::vector<std::string> warnings;  ///< of the model, and of what the run did not do as it should
+  std::vector<std::string> warnings;  ///< of the model and of the run's quality
 };
 
 /// Errors: as read_scene, build_model, RunWriter and Simulation::advance throw them. After Error(solver) the

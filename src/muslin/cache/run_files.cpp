@@ -48,7 +48,7 @@ std::vector<CheckpointFile> list_checkpoints(const fs::path& run) {
 
 namespace {
 
-/// run.json of a run; null if there is none.
+/// Returns run.json of a run; null if there is none.
 nlohmann::json summary(const fs::path& directory) {
   std::error_code code;
   if (!fs::is_regular_file(directory / "run.json", code)) return nullptr;
@@ -114,7 +114,7 @@ void remove_run_files(const fs::path& directory) {
   for (const auto& body : json.value("bodies", nlohmann::json::array()))
     for (const std::string& name : names_of(body.value("name", ""))) doomed.push_back(directory / name);
   for (const CheckpointFile& file : list_checkpoints(directory)) doomed.push_back(file.path);
-  // run.json goes last: until then the directory is known as a run and can be cleaned again.
+  // run.json is removed last: until then the directory is recognised as a run and can be cleaned again.
   for (const std::string& name : own_names()) doomed.push_back(directory / name);
   for (const fs::path& path : doomed) remove_file(path);
 }

@@ -1,4 +1,4 @@
-// Names of the files of a run, and which of them a run owns.
+// Names the files of a run and lists and removes those that belong to it.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +27,13 @@ std::vector<CheckpointFile> list_checkpoints(const std::filesystem::path& run);
 
 /// True if the directory holds a run of muslin (finished or not).
 bool is_run(const std::filesystem::path& directory);
-/// True if it holds a run that was begun although surfaces crossed, as run.json says.
+/// True if it holds a run that was started with crossing surfaces, according to run.json.
 bool is_tangled_run(const std::filesystem::path& directory);
 
 /// Removes files that a process killed while writing left half done. Errors: file.
 void remove_unfinished_files(const std::filesystem::path& directory, const std::vector<std::string>& bodies);
 
-/// Removes what an earlier run wrote, and nothing else. Errors: file.
+/// Removes only the files of an earlier run. Errors: file.
 void remove_run_files(const std::filesystem::path& directory);
 
 }  // namespace muslin

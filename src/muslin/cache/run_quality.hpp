@@ -1,4 +1,4 @@
-// How far the frames of a run can be trusted: what missed its tolerance, was held back or crosses.
+// RunQuality collects the defects of a run: missed tolerances, held-back vertices, crossings.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct RunQuality {
 /// and are not empty.
 std::string describe_frames(const std::vector<int>& frames);
 
-/// What the user of the run should know, a sentence each; none if all is well.
+/// Returns warnings for the user, one sentence each; empty if there is no defect.
 std::vector<std::string> warnings_of(const RunQuality& quality);
 
 }  // namespace muslin

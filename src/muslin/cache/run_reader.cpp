@@ -57,7 +57,7 @@ bool describes_run(const Json& run) {
                      [](const Json& body) { return body.is_object() && is_text(body, "name"); });
 }
 
-/// Runs of before there were other models do not say.
+/// Runs from before other models existed lack the key.
 bool is_lattice(const Json& body) { return body.value("model", "lattice") == "lattice"; }
 
 }  // namespace
@@ -131,7 +131,7 @@ RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
       tracks.shape = {std::move(voxels.points), std::move(voxels.voxels)};
       tracks.contour = track(files.contour_cache);
       tracks.lattice = track(files.lattice_cache);
-      // Where the voxels are far larger than the body, no contour lies between them.
+      // A body much smaller than a voxel has no contour.
       if (tracks.contour->cache.points() > 0)
         tracks.contour_mesh = read_mesh(parts.directory / files.contour_mesh).mesh;
       fit(*tracks.contour, tracks.contour_mesh.vertex_count(), files.contour_cache);

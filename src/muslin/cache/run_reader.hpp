@@ -1,4 +1,4 @@
-// Reading a run directory: what pictures, exports and views are made from.
+// RunReader reads a run directory for pictures, exports and views.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace muslin {
 
-/// What a run shows of a body.
+/// The surface of a body that is shown.
 enum class SurfaceKind {
   skin,     ///< the original mesh, carried by the lattice
   contour,  ///< marching squares or cubes on the deformed lattice
@@ -38,23 +38,23 @@ class RunReader {
   std::string resolved_scene() const;  ///< JSON, as Scene::resolved
   double frame_rate() const;           ///< [1/s]
   int frame_count() const;
-  int last_frame() const;  ///< that the run has or, unfinished, was to reach
+  int last_frame() const;  ///< of the run, or the planned one if unfinished
   const std::vector<std::string>& bodies() const;
-  /// Index of a body by name; an empty name means the only one that is no collider. Error(usage) naming the
-  /// bodies there are.
+  /// Returns the index of a body by name; an empty name means the only one that is not a collider.
+  /// Error(usage) naming the bodies there are.
   int find_body(const std::string& name) const;
 
-  /// In pictures, sRGB 0…1: as the scene says, else from a palette; colliders are grey.
+  /// Returns the colour in pictures, sRGB 0…1: that of the scene, else from a palette; colliders are grey.
   Vec3 colour(int body) const;
 
   bool is_collider(int body) const;
-  /// A collider without end, of which a patch is shown.
+  /// True for an unbounded collider, of which a patch is shown.
   bool is_plane(int body) const;
   /// Shells and colliders have a skin, and neither contour nor lattice.
   bool has_lattice(int body) const;
 
-  /// The surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of what is
-  /// no lattice.
+  /// The surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of a body
+  /// without a lattice.
   const Mesh& mesh(int body, SurfaceKind surface) const;
   /// Its vertices at a frame, in the same order [m].
   std::vector<Vec3f> points(int body, SurfaceKind surface, int frame) const;
@@ -71,7 +71,7 @@ class RunReader {
   std::vector<Vec3f> lattice_points(int body, int frame) const;
   std::vector<Vec3f> lattice_velocities(int body, int frame) const;
 
-  /// What the pins and the point forces hold, as the last session of the run had them.
+  /// Returns the vertices of the pins and point forces in the last session of the run.
   const Selections& selections() const;
 
   /// Rows of diagnostics.csv, frames 0 … frame_count() − 1.

@@ -1,5 +1,5 @@
-// Writing a run directory: what a run leaves, and what the next session goes on from.
-// docs/guide/run-directory.md lists the files.
+// RunWriter writes a run directory, including the checkpoints for resuming. docs/guide/run-directory.md lists
+// the files.
 #pragma once
 
 #include <filesystem>
@@ -15,30 +15,30 @@ namespace muslin {
 enum class RunStatus { running, finished, interrupted, failed };
 const char* name_of(RunStatus status);
 
-/// How far back a run can be taken up again.
+/// Checkpoints to keep and the frame to resume from.
 struct RunHistory {
   bool keep_states = false;  ///< keep the checkpoint of every frame
-  int resume_from = -1;  ///< resume from that of this frame and cut off what lies behind it; −1: the newest
+  int resume_from = -1;      ///< resume from this frame and discard later ones; −1: the newest
 };
 
-/// Settings of the run in `directory` that the model's scene has otherwise, e.g. "time.duration". Errors:
-/// input, naming them, if the frames already written could not bear it; file.
+/// Returns the settings of the run in `directory` that differ from the model's scene, e.g. "time.duration".
+/// Errors: input, naming them, if they are incompatible with the frames already written; file.
 std::vector<std::string> changes_since(const std::filesystem::path& directory, const Model& model);
 
-/// Writes a run. One process at a time; a lock in `checkpoint/` sees to it.
+/// Writes a run. A lock in `checkpoint/` admits one process at a time.
 ///
-/// A frame goes to the disk in this order: points, rows, checkpoint. Whatever moment the process is killed,
-/// the newest checkpoint therefore has all its frames, and what lies behind it is cut off on resume.
-/// A checkpoint is written after every frame; states beyond 64 MiB at least every 10 s instead. The content
-/// is forced to the disk every 5 s and at the end. The last two checkpoints are kept; with `keep_states` one
-/// of every frame, whatever its size.
+/// A frame goes to the disk in this order: points, rows, checkpoint. If the process is killed at any moment,
+/// the newest checkpoint therefore has all its frames, and later data is discarded on resume. A checkpoint is
+/// written after every frame; states beyond 64 MiB at least every 10 s instead. The content is forced to the
+/// disk every 5 s and at the end. The last two checkpoints are kept; with `keep_states` one of every frame,
+/// whatever its size.
 class RunWriter {
  public:
   /// Begins a run at the simulation's frame 0, or with `resume` restores the simulation from the newest
-  /// checkpoint, or that of `history.resume_from`, and goes on behind it; without any it begins.
-  /// An earlier run in `directory` is replaced, only muslin's own files. Errors: file, if the directory
-  /// cannot be made or written, holds something else than a run, or is being written by another process;
-  /// input, if the run to resume has other bodies, naming what changed, or no state of `history.resume_from`.
+  /// checkpoint, or that of `history.resume_from`, and continues from there; without any it begins anew. An
+  /// earlier run in `directory` is replaced, only muslin's own files. Errors: file, if the directory cannot
+  /// be made or written, holds something else than a run, or is being written by another process; input, if
+  /// the run to resume has other bodies, naming what changed, or no state of `history.resume_from`.
   RunWriter(std::filesystem::path directory, Simulation& simulation, int total_frames, bool resume,
             RunHistory history = {});
   /// Leaves the status `running`, as a killed process does, unless finish() was called.
@@ -49,13 +49,13 @@ class RunWriter {
   const std::vector<std::string>& changes() const;
   /// Adds the frame that the simulation has just finished.
   void write_frame();
-  /// Of all frames of the run so far.
+  /// Returns the quality of all frames of the run so far.
   const RunQuality& quality() const;
-  /// Writes a checkpoint of the very step reached, flushes everything, sets the status. `reason` says why a
-  /// run failed or stopped.
+  /// Writes a checkpoint of the step reached, flushes everything, sets the status. `reason` states why a run
+  /// failed or stopped.
   void finish(RunStatus status, const std::string& reason = "");
-  /// Marks the run failed after Error(file), as far as the disk allows; the last checkpoint stays the one
-  /// to go on from.
+  /// Marks the run failed after Error(file), as far as the disk allows; the last checkpoint stays the one to
+  /// resume from.
   void abandon(const std::string& reason);
 
  private:

@@ -46,7 +46,7 @@ Selections selections_of(const Model& model) {
       return pin.vertices.front() < body.first_vertex + body.vertex_count;
     };
     const auto body = std::find_if(model.bodies.begin(), model.bodies.end(), holds);
-    if (body->is_rigid()) continue;  // held as a whole, by vertices that nobody sees
+    if (body->is_rigid()) continue;  // held as a whole, by its control vertices
     Chosen chosen{pin.name, static_cast<int>(body - model.bodies.begin()), {}, pin.from, pin.until, -1};
     for (const int v : pin.vertices) chosen.vertices.push_back(v - body->first_vertex);
     selections.pins.push_back(std::move(chosen));

@@ -1,4 +1,4 @@
-// selections.json: which vertices the pins and point forces of a run hold.
+// Reads and writes selections.json: the vertices of the pins and point forces of a run.
 #pragma once
 
 #include <filesystem>

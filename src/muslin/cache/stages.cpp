@@ -61,7 +61,7 @@ VtkGrid spring_lines(const Springs& springs, std::vector<double> points) {
   return grid;
 }
 
-/// Triangles with the direction of their warp.
+/// Writes the triangles with the direction of their warp.
 VtkGrid triangles(const Body& body, std::vector<double> points) {
   VtkGrid grid;
   grid.points = std::move(points);
@@ -85,7 +85,7 @@ VtkGrid triangles(const Body& body, std::vector<double> points) {
 void write_stages(const std::filesystem::path& directory, const Model& model, const Progress& progress) {
   make_directory(directory);
   for (const Body& body : model.bodies) {
-    body_files(body.name);  // refuses names that cannot be file names
+    body_files(body.name);  // rejects invalid file names
     const auto at = [&](const char* stage) { return directory / (body.name + "." + stage); };
     const std::vector<double> rest = flat(model.of(body, model.rest_positions));
     if (body.is_shell()) write_vtu(at("shell.vtu"), triangles(body, rest));

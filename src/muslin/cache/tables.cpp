@@ -12,7 +12,7 @@
 namespace muslin {
 namespace {
 
-/// A field as RFC 4180 wants it.
+/// Quotes a field as in RFC 4180.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string result = "\"";
@@ -22,7 +22,7 @@ std::string quoted(const std::string& text) {
 
 constexpr std::size_t all_columns = 23, first_columns = 16;  // of this version, of earlier ones
 
-/// That earlier versions wrote: without the columns behind wall_ms.
+/// Header of earlier versions, without the columns after wall_ms.
 std::string first_header() {
   constexpr std::string_view last = ",wall_ms";
   return std::string(diagnostics_header.substr(0, diagnostics_header.find(last) + last.size())) + "\n";

@@ -1,4 +1,4 @@
-// The tables of a run: diagnostics.csv and probes.csv.
+// Reads and writes the tables of a run: diagnostics.csv and probes.csv.
 #pragma once
 
 #include <filesystem>
@@ -20,11 +20,11 @@ std::string diagnostics_row(const Diagnostics& row);
 std::string probe_rows(const Simulation& simulation);
 
 /// The rows of a diagnostics table; an unfinished last line is left out. Tables of earlier versions have no
-/// columns behind wall_ms; these are 0 then. Errors: file, input.
+/// columns after wall_ms; these are 0 then. Errors: file, input.
 std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path);
 
-/// Length of the beginning of a table that holds its first line and all rows up to `last_frame` (the first
-/// column). 0 if the table is not one.
+/// Returns the length of the part of a table up to and including the rows of `last_frame` (the first column).
+/// 0 if the text is not a table.
 std::size_t table_length(std::string_view table, int last_frame);
 
 }  // namespace muslin

@@ -38,7 +38,7 @@ constexpr const char* vtk_type<std::uint8_t>() {
   return "UInt8";
 }
 
-/// Collects arrays: their XML elements at once, their bytes for the end of the file.
+/// Collects arrays: their XML elements are written immediately, their bytes at the end of the file.
 class Appendix {
  public:
   template <class Number>

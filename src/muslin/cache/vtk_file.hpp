@@ -1,6 +1,6 @@
-// VTK's XML files, as ParaView reads them: unstructured grids (.vtu), images (.vti), time series (.pvd).
-// Arrays are appended raw, little-endian, each behind its length in bytes (UInt64).
-// Source: VTK File Formats, docs.vtk.org.
+// Reads and writes VTK's XML files, as ParaView uses them: unstructured grids (.vtu), images (.vti), time
+// series (.pvd). Arrays are appended raw, little-endian, each behind its length in bytes (UInt64). Source:
+// VTK File Formats, docs.vtk.org.
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,7 @@
 namespace muslin {
 namespace {
 
-/// From where the pin took its vertices to where they belong at `time`.
+/// Returns the motion from the positions at the pin's beginning to those at `time`.
 Eigen::Isometry3d motion_since(const Pin& pin, double time) {
   if (pin.motion.keys.empty()) return Eigen::Isometry3d::Identity();
   return pin.motion.at(time) * pin.motion.at(std::max(pin.from, 0.0)).inverse();

@@ -1,4 +1,4 @@
-// Which vertices the pins hold during a step, and where.
+// Holds finds the vertices that pins hold during a step, and their targets.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace muslin {
 
-/// What pins remember between steps: plain data, part of the state of a run. A value: a step that failed
-/// is tried again from a copy made before it. Starts empty.
+/// Memory of the pins between steps: plain data, part of the state of a run. A value type: a failed step is
+/// repeated from a copy made before it. Starts empty.
 struct Holds {
   std::vector<std::uint8_t> holding;  ///< #pins, 1 while the pin holds; empty before the first step
   std::vector<Vec3> anchors;          ///< where the vertices were when their pin took hold, seen from their
@@ -24,19 +24,19 @@ struct Holds {
     arrays("holds.anchors", self.anchors);
   }
 
-  /// Decides the step from `time_begin`, when the vertices are at `positions`, to `time_end`.
-  /// fixed[v] = 1 where v is held at the end of the step, and targets[v] is then its place; elsewhere
+  /// Evaluates the pins for the step from `time_begin`, when the vertices are at `positions`, to `time_end`.
+  /// fixed[v] = 1 where v is held at the end of the step, and targets[v] is then its position; elsewhere
   /// fixed[v] = 0 and targets[v] is positions[v].
   ///
-  /// A pin that is active at `time_end` holds; one that becomes so takes its vertices from `positions` and
-  /// forgets them when it lets go. Where pins overlap, the later in `pins` decides. A pin's first moment is
-  /// max(from, 0), as runs start at time 0. `from` and `until` within 1e-6 of a step of `time_end` count
-  /// as reached: a clock that adds up steps is not exact.
+  /// A pin that is active at `time_end` holds; one that becomes active records its vertices from `positions`
+  /// and discards them when it ends. Where pins overlap, the later one in `pins` has priority. A pin's first
+  /// moment is max(from, 0), as runs start at time 0. `from` and `until` within 1e-6 of a step of `time_end`
+  /// count as reached: a clock that adds up steps is not exact.
   void step(std::span<const Pin> pins, double time_begin, double time_end, ConstVectors positions,
             std::span<std::uint8_t> fixed, Vectors targets);
 
-  /// The vertices were put to `positions` by hand at `time`, the end of the last step: pins that are holding
-  /// hold them there, and move them on from there.
+  /// Call when the vertices were set to `positions` from outside at `time`, the end of the last step: holding
+  /// pins hold them there, and move them from there.
   void take_anew(std::span<const Pin> pins, double time, ConstVectors positions);
 };
 

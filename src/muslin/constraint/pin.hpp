@@ -1,4 +1,4 @@
-// Vertices held in place or moved along keyframes, and let go again.
+// A Pin holds vertices in place or moves them along keyframes for some time.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,9 @@ struct Motion {
   Eigen::Isometry3d at(double time) const;
 };
 
-/// Holds `vertices` from `from` until `until`: vertex v stands at motion(t)·motion(from)⁻¹ applied to where
-/// it was when the pin took hold. With a sequence it keeps instead the distance that it then had from the
-/// point of the sequence it follows.
+/// Holds `vertices` from `from` until `until`: vertex v is at motion(t)·motion(from)⁻¹ applied to its
+/// position when the pin began. With a sequence it keeps instead the offset that it then had from the point
+/// of the sequence it follows.
 struct Pin {
   std::string name;
   std::vector<int> vertices;                               ///< global vertex indices, ascending

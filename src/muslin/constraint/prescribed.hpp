@@ -1,5 +1,5 @@
-// Vertices whose place is a function of time: those of colliders that stand, move along keyframes, or follow
-// the samples of an animation.
+// Prescribed vertices follow a function of time: those of colliders that stand, move along keyframes, or
+// follow the samples of an animation.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace muslin {
 
-/// Vertices first … first + start.size() − 1 stand at motion(t)·motion(0)⁻¹ applied to where they start, or,
-/// with a sequence, at `placement` applied to its points.
+/// Vertices first … first + start.size() − 1 are at motion(t)·motion(0)⁻¹ applied to their start positions,
+/// or, with a sequence, at `placement` applied to its points.
 struct Prescribed {
   int first = 0;
   std::vector<Vec3> start;  ///< at time 0 [m]
@@ -22,10 +22,10 @@ struct Prescribed {
   std::shared_ptr<const PointSequence> sequence;  ///< of as many points; null: `motion` decides
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();
 
-  /// Of these vertices, #start by 3 [m].
+  /// Computes the positions x of these vertices, #start by 3 [m].
   void positions(double time, Vectors x) const;
   bool moves() const { return !motion.keys.empty() || sequence != nullptr; }
-  /// Holds them at the end of a step: fixed[v] = 1 and their targets; both over all vertices.
+  /// Sets fixed[v] = 1 and the targets of these vertices at the end of a step; both over all vertices.
   void hold(double time_end, std::span<std::uint8_t> fixed, Vectors targets) const;
 };
 

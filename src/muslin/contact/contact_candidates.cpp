@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t grain = 256;
 
-/// Of a rest distance, how much thickness and range together may take.
+/// Shares of a rest distance that thickness and range may take.
 constexpr double rest_thickness = 0.5, rest_range = 0.4;
 
 std::array<int, 4> points_of(const ContactSurface& surface, PairKind kind, int first, int second) {
@@ -67,7 +67,7 @@ ContactCandidates::ContactCandidates(std::shared_ptr<const ContactSurface> surfa
     : surface_(std::move(surface)), contact_distance_(contact_distance), search_(surface_, rest) {
   if (!(contact_distance > 0))
     throw Error(ErrorKind::usage, "the contact distance is not positive", "give a length in metres");
-  // What is close at rest within a body; boxes are widened by the radii already.
+  // Pairs that are close at rest within a body; boxes already include the radii.
   const std::vector<int> sizes = points_of_bodies(*surface_);
   double thickest = 0;
   for (std::size_t body = 0; body < sizes.size(); ++body) {
@@ -158,7 +158,7 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
   if (begin.size() != points || end.size() != points)
     throw Error(ErrorKind::usage, "contact candidates need one position for each point", "give #P positions");
   found_at_.assign(begin.begin(), begin.end());
-  // Boxes around whole ways are compared faster, and as good while ways are short.
+  // Boxes around whole displacements are faster to compare, and as tight while displacements are short.
   double farthest = 0;
   for (std::size_t p = 0; p < points; ++p) farthest = std::max(farthest, (end[p] - begin[p]).squaredNorm());
   boxes_.restart();
@@ -198,7 +198,7 @@ void ContactCandidates::renew(std::span<const std::uint8_t> moved, ConstVectors 
   add_near_pairs();
 }
 
-/// Of what the search has found, and of planes.
+/// Collects near pairs from those of the search and from planes.
 void ContactCandidates::add_near_pairs() {
   const auto blocks = [](std::size_t count) { return (count + grain - 1) / grain; };
   const std::size_t vertex_triangle = blocks(found_.vertex_triangle.size());

@@ -1,5 +1,5 @@
-// The pairs of features that may touch while all points stay within reach of where they are, kept for several
-// iterations; what contact energy and step limiter walk over.
+// ContactCandidates finds the candidate pairs: feature pairs that may touch while all points stay in their
+// boxes. They are kept for several iterations and used by contact energy and step limiter.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct ContactPair {
   double thickness = 0;  ///< the distance of the two midsurfaces when they touch [m]
   double range = 0;      ///< the contact distance d̂ of this pair [m]: contact energy acts below this gap
 
-  /// Says which features, for any order of the pairs.
+  /// Returns a key that identifies the features, independent of the order of the pairs.
   std::uint64_t key() const { return key_of(kind, first, second); }
   static std::uint64_t key_of(PairKind kind, int first, int second) {
     return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(first) << 31 |
@@ -38,41 +38,41 @@ struct ContactPair {
 /// The distance of a pair's features and its derivative: ∂d/∂xᵢ = weights[i] · normal.
 struct PairGeometry {
   Vec3 normal = Vec3::Zero();  ///< from the second feature to the first; zero if d = 0
-  double distance = 0;         ///< [m], not of planes: there it has a sign
+  double distance = 0;         ///< [m]; signed for planes
   std::array<double, 4> weights{};
 };
 PairGeometry pair_geometry(const ContactSurface& surface, const ContactPair& pair, ConstVectors x);
 
 class ContactCandidates {
  public:
-  /// `rest` (#P by 3, [m]): features of one body that are as close at rest as contact would keep them are
-  /// given a smaller thickness and range, so that a body at rest is not in contact with itself.
-  /// `contact_distance`: d̂ [m]. Errors: usage, if it is not positive or sizes do not fit.
+  /// `rest` (#P by 3, [m]): features of one body that are closer at rest than contact would keep them get a
+  /// smaller thickness and range, so that a body at rest is not in contact with itself. `contact_distance`:
+  /// d̂ [m]. Errors: usage, if it is not positive or sizes do not fit.
   ContactCandidates(std::shared_ptr<const ContactSurface> surface, ConstVectors rest,
                     double contact_distance);
 
-  /// From the next update on, no feature of triangle first forms a pair with one of triangle second; by
-  /// default all do.
+  /// Excludes pairs between features of triangle first and triangle second, from the next update on; by
+  /// default none are excluded.
   void leave_free(std::span<const std::array<int, 2>> triangles);
 
-  /// Finds the pairs that may come within range while all points go straight from `begin` to `end` (#P by 3,
-  /// [m]) at the same pace, each give or take `margin` [m] along every axis. While none goes farther than
-  /// `long_way` [m], each may be anywhere between, at any time: that is faster while ways are short.
+  /// Finds the pairs that may come within range while all points move in straight lines from `begin` to `end`
+  /// (#P by 3, [m]) at the same pace, each within ± `margin` [m] along every axis. If no displacement exceeds
+  /// `long_way` [m], each point may be anywhere between, at any time; this is faster for short displacements.
   void update(ConstVectors begin, ConstVectors end, double margin,
               double long_way = std::numeric_limits<double>::infinity());
-  /// The same for those points alone whose `moved` (#P) is not zero, which may be anywhere between, at any
-  /// time: the others stay in the boxes they have, and pairs without a moved point are as they were.
+  /// The same only for points whose `moved` (#P) is not zero, which may be anywhere between, at any time; the
+  /// others keep their boxes, and pairs without a moved point are unchanged.
   void renew(std::span<const std::uint8_t> moved, ConstVectors begin, ConstVectors end, double margin);
 
   const ContactSurface& surface() const { return *surface_; }
   std::shared_ptr<const ContactSurface> shared_surface() const { return surface_; }
   double contact_distance() const { return contact_distance_; }
   std::span<const ContactPair> pairs() const { return pairs_; }
-  /// #pairs: no more than the distance of each pair at `found_at` [m]; of planes 0.
+  /// #pairs: lower bound of the distance of each pair at `found_at` [m]; 0 for planes.
   std::span<const float> least_distances() const { return least_distances_; }
-  /// Where those distances are meant, #P by 3 [m]: the `begin` of the last update.
+  /// Positions at which those bounds hold, #P by 3 [m]: the `begin` of the last update.
   ConstVectors found_at() const { return found_at_; }
-  /// The boxes in which the pairs are complete, #P: all points have to be in theirs at the same time.
+  /// The boxes for which the pairs are complete, #P: all points have to be in theirs at the same time.
   const MovingBoxes& boxes() const { return boxes_; }
 
  private:
@@ -83,7 +83,7 @@ class ContactCandidates {
     std::vector<ContactPair> pairs;
     std::vector<float> distances;
   };
-  /// Appends those that may come into range.
+  /// Appends the pairs that may come into range.
   template <class Pair>
   void add_near(PairKind kind, std::span<const Pair> found, Near& out) const;
   void add_near_pairs();

@@ -1,4 +1,4 @@
-// The scalar laws of contact and friction.
+// Defines the scalar laws of contact and friction.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@ struct Law {
   double value = 0, slope = 0, curvature = 0;
 };
 
-/// Energy b(g) of a gap g [m] for stiffness 1 N/m: a spring at the range d̂ [m], and ever stiffer, without
-/// bound at zero.
+/// Energy b(g) of a gap g [m] for stiffness 1 N/m: a spring at the range d̂ [m] that stiffens without bound
+/// towards zero.
 ///
 ///   g ≥ d̂      0
 ///   g > 0      ½ (d̂ − g)² d̂/g        slope −½ d̂ ((d̂/g)² − 1),   curvature (d̂/g)³
@@ -21,8 +21,8 @@ struct Law {
 ///
 /// Under a force of f springs pressed to the end the gap is about d̂/√(2f), and the curvature twice the force
 /// over the gap. A logarithmic barrier (Li et al., Incremental Potential Contact, 2020) lets the gap fall as
-/// 1/f: under a heavy load to where Newton's method, which can hardly more than double a gap, comes back from
-/// in many iterations only (docs/theory/contact.md).
+/// 1/f: under a heavy load to values from which Newton's method, which can hardly more than double a gap,
+/// needs many iterations to recover (docs/theory/contact.md).
 inline Law contact_law(double gap, double range) {
   if (gap >= range) return {};
   if (!(gap > 0)) {
@@ -39,9 +39,9 @@ inline Law contact_law(double gap, double range) {
 ///   y = s/stick < 1    stick (y² − y³/3)          force 2y − y²
 ///   else               s − stick/3                force 1
 ///
-/// `curvature` is the secant force/s, which is never less than the derivative. The quadratic with it that
-/// touches the energy at s lies nowhere below: steps that it foretells need no line search, while the true
-/// curvature, zero where surfaces slide, sends them past the other side of sticking.
+/// `curvature` is the secant force/s, which is never less than the derivative. The quadratic with this
+/// curvature that touches the energy at s is an upper bound: its steps need no line search, while the true
+/// curvature, zero where surfaces slide, makes them overshoot the sticking range.
 inline Law friction_law(double slip, double stick) {
   const double y = slip / stick;
   if (y >= 1) return {slip - stick / 3, 1, 1 / slip};

@@ -14,35 +14,35 @@ namespace {
 
 /// Boxes of candidates are wider than the motion by this share of d̂.
 constexpr double margin_share = 0.5;
-/// Where no more than this share of the points leaves its boxes, only theirs are found anew.
+/// If at most this share of the points leaves its boxes, only their candidates are updated.
 constexpr double renewed_share = 0.3;
-/// What is pushed goes this much farther than what pushes it, along slanting normals.
+/// Pushed vertices move at most this much farther than the pushing ones, along slanting normals.
 constexpr double pushed_share = 1.5;
-/// Displacements of more edges than this are limited in pieces, of which there are no more than so many.
+/// Displacements of more edges than this are limited in pieces, at most `most_pieces`.
 constexpr double edges_at_once = 2;
 constexpr int most_pieces = 256;
-/// Times that a displacement is limited, after points that were stopped were found anew. Each finds others,
-/// as a rule none after two or three; what has not ended by then does not move.
+/// Most rounds of limiting a displacement; each updates the candidates of points that left their boxes. Two
+/// or three usually suffice; otherwise the displacement is set to zero.
 constexpr int most_rounds = 32;
-/// What pushes others goes this share of that at once: all that it might push has to be searched that far.
+/// Prescribed vertices move this share of that at once: the search covers all vertices they might push.
 constexpr double pushed_at_once = 0.125;
-/// Edges taken to be this many contact distances long where nothing bends.
+/// Assumed edge length in contact distances if no body is deformable.
 constexpr double edge_distances = 5;
-/// This share of the model's gap floor is kept: contact has to hold whatever presses.
+/// Share of the model's gap floor that is kept; contact resists any load.
 constexpr double floor_share = 0.01;
 /// Motions below this share of that floor need no limit.
 constexpr double slack_share = 1e-4;
-/// The share of gaps that an iteration keeps. Iterations go far; one that ends with some edges at a
-/// thousandth of the range meets forces there that nothing else comes near, and comes back by half of the gap
-/// in an iteration: what moves along at such gaps is stopped.
+/// Share of gaps that an iteration keeps. An iteration that ends with some edges at a thousandth of the range
+/// produces forces there that dwarf all others and recovers only half of the gap per iteration, which stops
+/// all motion coupled to such gaps.
 constexpr double kept_share = 0.3;
 /// Groups that move less than this share of the gap between them are not limited.
 constexpr double safe_share = 0.5;
-/// Slip at which friction is full, as a share of the range; whatever the steps, so that what rests stays where
-/// it is when they change.
+/// Slip at which friction is full, as a share of the range; independent of the step, so that bodies at rest
+/// do not move when it changes.
 constexpr double stick_share = 0.005;
 
-/// Mean length over edges of what bends.
+/// Returns the mean edge length of deformable bodies.
 double mean_edge(const ContactModel& model) {
   const ContactSurface& surface = *model.surface;
   const auto bends = [&](int point) {
@@ -125,14 +125,14 @@ void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end, double 
   distances_.forget();
 }
 
-/// Brings the distances to q.
+/// Updates the distances to q.
 void ContactGuard::measure(ConstVectors q) {
   model_->map->apply(q, x_);
   distances_.update(x_);
 }
 
-/// Makes sure that all pairs are known for the way from q to q + d, and for what is pushed out of the way of
-/// held vertices: that goes about as far as they.
+/// Ensures that all pairs are known for the motion from q to q + d, and for vertices pushed aside by held
+/// vertices, which move about as far as those.
 void ContactGuard::cover(ConstVectors q, ConstVectors d) {
   double push = 0;
   for (std::size_t v = 0; v < held_.size(); ++v)
@@ -157,7 +157,7 @@ void ContactGuard::cover(ConstVectors q, ConstVectors d) {
   if (count > 0) renew();
 }
 
-/// Finds the candidates of the points outside_ anew, which stay between x_ and to_.
+/// Updates the candidates of the points outside_, which stay between x_ and to_.
 void ContactGuard::renew() {
   const Stopwatch watch(counts_.search_seconds);
   ++counts_.searches;
@@ -166,8 +166,8 @@ void ContactGuard::renew() {
   renewed_ = true;
 }
 
-/// Whether a displacement that was limited takes points away from their boxes, which go where it led before:
-/// then their candidates are found anew.
+/// Returns true if the limited displacement takes points out of their boxes, which were made for the original
+/// one; their candidates are then updated.
 bool ContactGuard::renew_stopped(ConstVectors d) {
   model_->map->apply(d, to_);
   bool any = false;
@@ -180,7 +180,7 @@ bool ContactGuard::renew_stopped(ConstVectors d) {
   return any;
 }
 
-/// A run that is resumed finds candidates as memory_ tells.
+/// Clears memory_ if it does not match the candidates, since a resumed run finds them from it.
 void ContactGuard::forget_renewed() {
   if (!renewed_) return;
   memory_.begin.clear();
@@ -188,8 +188,8 @@ void ContactGuard::forget_renewed() {
   renewed_ = false;
 }
 
-/// A displacement far beyond an edge's length is a blunder of the solver, and would make everything a
-/// candidate.
+/// Shortens displacements far beyond an edge's length, which are solver artefacts and would make all pairs
+/// candidates.
 void ContactGuard::shorten(Vectors d) const {
   const StepLimits& limits = model_->limits;
   std::vector<double> of_group;
@@ -276,7 +276,7 @@ void ContactGuard::advance(Vectors q, ConstVectors d) {
   piece_.resize(q.size());
   for (int k = 1; k <= pieces; ++k) {
     for (std::size_t v = 0; v < q.size(); ++v) {
-      // What moves along keyframes makes up for where it was held; what is pushed aside does not come back.
+      // Prescribed vertices catch up after being held back; pushed vertices do not return.
       const bool prescribed = held_[v] != 0;
       piece_[v] =
           prescribed ? Vec3(from[v] + static_cast<double>(k) / pieces * d[v] - q[v]) : Vec3(d[v] / pieces);
@@ -301,7 +301,7 @@ const Potential& ContactGuard::potential(ConstVectors q, StepGuard::Friction fri
   return *potential_;
 }
 
-/// Far below what the limiter leaves of every gap.
+/// Returns a length far below the gap that the limiter leaves.
 double ContactGuard::slack() const { return slack_share * floor_share * model_->limits.gap_floor; }
 
 void ContactGuard::for_each_contact(const std::function<void(const Contact&)>& visit) const {
@@ -313,7 +313,7 @@ void ContactGuard::end(ConstVectors q) {
   measure(q);
   memory_.smallest_gap = distances_.smallest_gap();
   if (!memory_.tangled.empty()) leave_tangled(q);
-  // What is free is no candidate. Where triangles cross their distance is 0.
+  // Ignored pairs are not candidates. Triangles that cross have distance 0.
   const ContactSurface& surface = *model_->surface;
   const auto radius = [&](int t) {
     return surface.radius_of(surface.triangles()[static_cast<std::size_t>(t)][0]);
@@ -323,7 +323,7 @@ void ContactGuard::end(ConstVectors q) {
   forget_renewed();
 }
 
-/// Pairs of triangles that cross at q.
+/// Returns the pairs of triangles that cross at q.
 std::vector<std::array<int, 2>> ContactGuard::crossing(ConstVectors q) {
   const ContactSurface& surface = *model_->surface;
   model_->map->apply(q, x_);

@@ -1,5 +1,5 @@
-// Contact of a run: joins search, limiter and energy into the guard that the solver asks. What lasts from
-// step to step lies in a ContactMemory; the guard itself can be thrown away between steps.
+// ContactGuard combines search, limiter and energy of contact into the StepGuard that the solver uses. State
+// that persists between steps is in a ContactMemory; the guard itself can be discarded between steps.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace muslin {
 
-/// What a guard has done since it was made.
+/// Counts of a guard's work since its construction.
 struct ContactCounts {
   std::size_t searches = 0;   ///< of candidates
   std::size_t limits = 0;     ///< displacements limited
@@ -27,14 +27,14 @@ struct ContactCounts {
   double search_seconds = 0, limit_seconds = 0, potential_seconds = 0;
 };
 
-/// Throws Error(input) if `memory` is of other surfaces than the model's.
+/// Throws Error(input) if `memory` belongs to other surfaces than the model's.
 void require_fit(const ContactMemory& memory, const ContactModel& model);
 
 class ContactGuard : public StepGuard {
  public:
-  /// Goes on from `memory`, writes to it, and is as good as a guard that made it: the next step gives the
-  /// same bits. The memory outlives the guard, and nobody else changes it in the meantime. Errors: input, if
-  /// it is of another surface.
+  /// Continues from `memory` and writes to it; the next step gives the same bits as with the guard that wrote
+  /// it. The memory must outlive the guard and not be changed elsewhere. Errors: input, if it is of another
+  /// surface.
   ContactGuard(std::shared_ptr<const ContactModel> model, ContactMemory& memory);
 
   void begin(ConstVectors q, std::span<const std::uint8_t> held) override;
@@ -46,13 +46,13 @@ class ContactGuard : public StepGuard {
   void for_each_contact(const std::function<void(const Contact&)>& visit) const override;
   void end(ConstVectors q) override;
 
-  /// Leaves the features of triangles that cross at q free of each other until these part. While some are
-  /// crossing, others beside them may begin to; once none is, nothing ever crosses again.
+  /// Excludes contact between the features of triangles that cross at q until these part. While some cross,
+  /// neighbours may begin to cross; once none does, nothing crosses again.
   void leave_tangled(ConstVectors q);
-  /// How many pairs of triangles cross still, of those left free.
+  /// Returns the number of excluded pairs of triangles that still cross.
   std::size_t tangled() const { return memory_.tangled.size(); }
 
-  /// The potential asked for last.
+  /// Returns the potential requested last.
   const ContactPotential& last_potential() const { return *potential_; }
   const ContactMemory& memory() const { return memory_; }
   const ContactCounts& counts() const { return counts_; }
@@ -60,7 +60,7 @@ class ContactGuard : public StepGuard {
  private:
   std::vector<std::array<int, 2>> crossing(ConstVectors q);
   void find_candidates(ConstVectors begin, ConstVectors end, double margin);
-  /// As they were found last.
+  /// Repeats the last search for candidates.
   void find_again();
   void forget_renewed();
   void renew();
@@ -75,10 +75,10 @@ class ContactGuard : public StepGuard {
   PairDistances distances_;
   StepLimiter limiter_;
   double margin_;        ///< by which boxes of candidates are wider than the motion [m]
-  double reach_ = 0;     ///< the same in the present displacement, with what is pushed in it [m]
-  double edge_;          ///< mean length of an edge of what bends [m]
+  double reach_ = 0;     ///< the same in the present displacement, including pushed vertices [m]
+  double edge_;          ///< mean edge length of deformable bodies [m]
   double longest_;       ///< displacement that is limited in one piece [m]
-  double longest_push_;  ///< the same of what pushes others along keyframes
+  double longest_push_;  ///< the same for prescribed vertices
   muslin::Friction friction_;
   std::vector<Vec3> start_;  ///< q where the step began
   std::vector<std::uint8_t> held_;
@@ -86,7 +86,7 @@ class ContactGuard : public StepGuard {
   ContactCounts counts_;
   std::vector<Vec3> x_, to_, piece_;
   std::vector<std::uint8_t> outside_;  ///< points that leave the boxes of the candidates
-  bool renewed_ = false;  ///< whether the candidates of some points are others than memory_ tells
+  bool renewed_ = false;               ///< true if candidates of some points differ from those of memory_
 };
 
 }  // namespace muslin

@@ -19,7 +19,7 @@ ContactHessian::ContactHessian(const SurfaceMap& map, const std::vector<ContactR
   std::vector<Entry> entries;
   for (const ContactRow& row : rows) {
     rows_.push_back({row.normal, row.normal_stiffness, row.tangential});
-    // The contact's weights on vertices: points of one pair may hang on the same ones.
+    // The contact's weights on vertices: points of one pair may share some.
     entries.clear();
     const auto add = [&](int vertex, double weight) {
       const auto same = std::find_if(entries.begin(), entries.end(),

@@ -1,4 +1,5 @@
-// The positive semidefinite Hessian of contact at one position, ready for many products:
+// ContactHessian stores the positive semidefinite Hessian of contact at one position, ready for many
+// products:
 //
 //   H = Σ Aᵀ (a n nᵀ + b (I − n nᵀ)) A,   A u = Σ wᵢ (J u)ᵢ + Σ wⱼ uⱼ the relative motion at a contact.
 #pragma once

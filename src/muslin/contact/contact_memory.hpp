@@ -1,4 +1,4 @@
-// The memory of contact from step to step.
+// ContactMemory keeps the contact state from step to step.
 #pragma once
 
 #include <array>
@@ -17,17 +17,16 @@ struct ArrayElement<PairSlip> {
   static constexpr std::string_view layout = "u64 f64x3";
 };
 
-/// Contact keeps this between steps, besides positions: a run that goes on with it gives the same bits.
+/// Contact keeps this between steps, besides positions: a run that continues with it gives the same bits.
 struct ContactMemory {
   std::vector<PairSlip> slips;  ///< by ascending key
   std::vector<Vec3> begin,
-      end;               ///< what candidates were found for, #P by 3 [m]; empty: they must be found anew
-  double margin = 0;     ///< by which their boxes are wider [m]
+      end;               ///< positions candidates were found for, #P by 3 [m]; empty: search again
+  double margin = 0;     ///< margin of their boxes [m]
   double smallest_gap =  ///< at the end of the last step [m]; infinite beyond d̂; −thickness
                          ///< where triangles cross
       std::numeric_limits<double>::infinity();
-  /// Pairs of triangles that cross still, of a start that was allowed to: their features are free of each
-  /// other.
+  /// Pairs of triangles that still cross since an allowed tangled start; no contact between their features.
   std::vector<std::array<int, 2>> tangled;
 
   template <class Self, class Arrays>

@@ -1,4 +1,4 @@
-// All of contact that does not change during a run: what touches, how far apart it keeps, how it slides.
+// ContactModel holds the contact data that is constant during a run: surfaces, contact distance, friction.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ struct ContactModel {
   std::vector<Vec3> rest;                 ///< #P by 3, points of the surface at rest [m]
   double distance = 2e-3;                 ///< d̂, the gap below which contact acts [m]
   double friction = 0;                    ///< Coulomb's μ of bodies without one of their own
-  StepLimits limits;  ///< gap floor; which vertices are prescribed, which move as one
+  StepLimits limits;                      ///< gap floor; prescribed vertices, rigid groups
   // For messages; may be empty.
   std::vector<std::string> names;  ///< of the surface's bodies
   std::vector<int> faces;          ///< #T, of the user's mesh, from 0; −1 of balls and capsules

@@ -1,4 +1,5 @@
-// Contact and friction as a potential of the degrees of freedom q, surfaces being x = J q:
+// ContactPotential is contact and friction as a potential of the degrees of freedom q, surfaces being x = J
+// q:
 //
 //   W(q) = Σ kₜ b(dₜ(x) − thicknessₜ) + Σ μ λₚ f(|eₚ(x)|)
 //
@@ -6,12 +7,12 @@
 // smaller stiffness of the two bodies times the term's coefficient.
 //
 // Friction's normal force λ, its normal and closest points are taken at the q the potential is made for, and
-// are then constant (lagged, as the friction of Li et al., Incremental Potential Contact, 2020): make it anew
-// in each iteration. Friction remembers. e is the slip since contact began, cut to `stick_length`: a spring
-// that holds, so that what rests does not creep (bristle model; Haessig, Friedland 1991), and the smoothed
-// Coulomb force where it slips. A vertex that goes on to the next triangle takes its slip along. What slips
-// over a round body is its surface, which turns: the point of a ball that touches is carried by the ball's
-// frame, as an affine combination of its four vertices.
+// are then constant (lagged, as the friction of Li et al., Incremental Potential Contact, 2020): construct it
+// anew in each iteration. Friction has memory. e is the slip since contact began, cut to `stick_length`: a
+// spring while sticking, so that bodies at rest do not creep (bristle model; Haessig, Friedland 1991), and
+// the smoothed Coulomb force while slipping. A vertex that moves to the next triangle keeps its slip. The
+// slip over a round body is relative to its turning surface: the touching point of a ball is carried by the
+// ball's frame, as an affine combination of its four vertices.
 #pragma once
 
 #include <cstddef>
@@ -32,10 +33,10 @@ namespace muslin {
 struct Friction {
   double coefficient = 0;      ///< Coulomb's μ of bodies without one of their own
   double stick_length = 1e-5;  ///< slip at which friction is full [m]
-  double dt = stopping_time;   ///< in which contact stops rigid bodies [s]
+  double dt = stopping_time;   ///< time in which contact stops rigid bodies [s]
 };
 
-/// The slip of a pair that sticks or slides, by ContactPair::key(); part of the moving state.
+/// Slip of a sticking or sliding pair, by ContactPair::key(); part of the state of a run.
 struct PairSlip {
   std::uint64_t key = 0;
   Vec3 slip = Vec3::Zero();  ///< of the first feature over the second, no longer than stick_length [m]
@@ -45,7 +46,7 @@ class ContactPotential : public Potential {
  public:
   /// For q near `lagged` (#V by 3, [m]), within the boxes of the candidates; `distances` are those at
   /// J `lagged`. `start` (#V by 3, [m]) are the positions at the beginning of the step, `slips` those of the
-  /// step before, by ascending key. Pairs without a gap at `lagged` are left free. Errors: usage, if a
+  /// step before, by ascending key. Pairs without a gap at `lagged` are ignored. Errors: usage, if a
   /// coefficient is negative or sizes do not fit.
   ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
                    Friction friction, ConstVectors start, std::span<const PairSlip> slips = {});
@@ -55,14 +56,14 @@ class ContactPotential : public Potential {
 
   double value(ConstVectors q) const override;
   void add_gradient(ConstVectors q, Vectors g) const override;
-  /// The positive curvatures k b″ n nᵀ and the secant of friction: positive semidefinite. Left out is b′
-  /// ∂²d/∂x², which is negative.
+  /// The positive curvatures k b″ n nᵀ and the secant of friction: positive semidefinite. The negative term
+  /// b′ ∂²d/∂x² is left out.
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
   void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;
 
   ContactHessian hessian(ConstVectors q) const;
-  /// That at the q the potential was made for.
+  /// Returns the Hessian at the q the potential was made for.
   ContactHessian hessian() const;
 
   /// The two sums of W.
@@ -73,7 +74,7 @@ class ContactPotential : public Potential {
   Parts parts(ConstVectors q) const;
 
   std::size_t term_count() const { return terms_.size(); }
-  /// What the next step starts from, when this one ends at q; by ascending key.
+  /// Returns the slips from which the next step starts if this one ends at q; by ascending key.
   std::vector<PairSlip> slips(ConstVectors q) const;
 
  private:
@@ -85,16 +86,16 @@ class ContactPotential : public Potential {
     Vec3 begin;                       ///< slip is the tangential part of Σ weights x + Σ carried q − begin
     int carried = -1;                 ///< which of carried_, −1: none
   };
-  /// Material points of the two features, as far as they are of turning bodies.
+  /// Material points of those features that belong to rotating bodies.
   struct Carried {
     std::array<SurfaceMap::Entry, 8> entries;
     std::size_t count = 0;
     std::span<const SurfaceMap::Entry> span() const { return {entries.data(), count}; }
   };
 
-  /// Positions of the surface points: q itself or `buffer`, filled.
+  /// Returns the positions of the surface points: q itself or `buffer`, filled.
   ConstVectors points(ConstVectors q, std::vector<Vec3>& buffer) const;
-  /// Those at x; `buffer`, filled, unless x is where the potential was made.
+  /// Returns the contacts at x: `buffer`, filled, unless x is the lagged position.
   std::span<const MergedContact> contacts(ConstVectors x, std::vector<MergedContact>& buffer) const;
   void carry(Rub& rub, ConstVectors x, ConstVectors q, Carried& carried) const;
   std::span<const SurfaceMap::Entry> carried(const Rub& rub) const;

@@ -1,5 +1,5 @@
-// The surfaces of all bodies and colliders as contact sees them: triangles, their edges and vertices, each
-// feature owned by one triangle, so that a pair of features is found once.
+// ContactSurface holds the surfaces of all bodies and colliders for contact: triangles, their edges and
+// vertices, each feature owned by one triangle, so that each feature pair is found once.
 //
 // A triangle with repeated indices is codimensional: (a, b, b) is a segment, such as the axis of a capsule,
 // (a, a, a) a point, such as the centre of a sphere; their body's radius makes them round.
@@ -20,26 +20,26 @@ namespace muslin {
 
 struct ContactBody {
   double radius = 0;         ///< half the thickness, or the radius of a sphere or capsule [m]
-  bool self_contact = true;  ///< whether it touches itself
+  bool self_contact = true;  ///< true if it touches itself
   bool fixed = false;        ///< a collider: two fixed bodies do not touch each other
-  /// Of a contact with this body [N/m]; that of a pair is the smaller one. About 0.15 of the membrane's
-  /// Young's modulus × thickness of cloth; infinite where the other body decides.
+  /// Stiffness of a contact with this body [N/m]; a pair uses the smaller one. About 0.15 of the membrane's
+  /// Young's modulus × thickness for cloth; infinite where the other body decides.
   double stiffness = 150;
-  /// Of a body with a radius: the vertices of the degrees of freedom (not surface points) that carry it, at
-  /// the corners of a tetrahedron that has volume, so that friction knows how its surface turns. −1: it does
-  /// not.
+  /// For a body with a radius: the vertices of the degrees of freedom (not surface points) that carry it, at
+  /// the corners of a tetrahedron that has volume, from which friction gets the rotation of its surface. −1:
+  /// none.
   std::array<int, 4> frame = {-1, -1, -1, -1};
-  /// Coulomb's μ of this body; none: the one of all that have none. That of a pair is the geometric mean.
+  /// Coulomb's μ of this body; none: the common default. A pair uses the geometric mean.
   std::optional<double> friction = std::nullopt;
-  /// Above 0: the stiffness is what stops this mass within a step, 4 m/dt², whatever `stiffness` says [kg].
+  /// Above 0: the stiffness is 4 m/dt², which stops this mass within a step; `stiffness` is ignored [kg].
   double mass = 0;
 };
 
-/// A half-space that nothing enters: gap = normal·(x − x_point). The plane moves with its point.
+/// An impenetrable half-space: gap = normal·(x − x_point). The plane moves with its point.
 struct ContactPlane {
   int point = 0;                ///< of the surface, of a body of its own
-  Vec3 normal = Vec3(0, 1, 0);  ///< outward, of length 1; of a plane that turns unused
-  /// Two more points of that body, −1: none. With them the plane turns: it goes through the three, and its
+  Vec3 normal = Vec3(0, 1, 0);  ///< outward, of length 1; unused for a turning plane
+  /// Two more points of that body, −1: none. With them the plane turns: it passes through the three, and its
   /// outward side is that of (span[0] − point) × (span[1] − point).
   std::array<int, 2> span = {-1, -1};
   bool turns() const { return span[0] >= 0; }
@@ -50,7 +50,7 @@ class ContactSurface {
  public:
   using Edge = std::array<int, 2>;
 
-  /// A triangle's corners and what it owns; the vertices and edges of a triangle are numbered 0, 1, 2, edge i
+  /// The features that a triangle owns; the vertices and edges of a triangle are numbered 0, 1, 2, edge i
   /// from corner i to corner i + 1 mod 3.
   struct Ownership {
     std::uint8_t vertices = 0, edges = 0;  ///< bit i: owns corner or edge i
@@ -70,7 +70,7 @@ class ContactSurface {
   std::span<const ContactPlane> planes() const { return planes_; }
   /// #T by 3; −1 where a codimensional triangle has no edge.
   std::span<const Vec3i> triangle_edges() const { return triangle_edges_; }
-  /// The corner opposite to an edge that has one triangle only; −1 if it has several or no such corner.
+  /// Returns the corner opposite to an edge with one triangle; −1 if it has several or no such corner.
   int lone_corner(int edge) const { return lone_corners_[static_cast<std::size_t>(edge)]; }
   std::span<const Ownership> ownership() const { return ownership_; }
 
@@ -82,16 +82,18 @@ class ContactSurface {
                       &b = bodies_[static_cast<std::size_t>(body_b)];
     return body_a == body_b ? a.self_contact && !a.fixed : !(a.fixed && b.fixed);
   }
-  /// Of a contact between the bodies of two points in a step of `dt` [s] [N/m]: the smaller one; where a rigid
-  /// body meets one that bends, their geometric mean if that is more, since the force may be all that stops it.
+  /// Returns the stiffness of a contact between the bodies of two points in a step of `dt` [s] [N/m]: the
+  /// smaller one; between a rigid and a deformable body their geometric mean if that is larger, since this
+  /// force alone may have to stop the rigid body.
   double stiffness(int point_a, int point_b, double dt) const {
     const auto of = [dt](const ContactBody& b) { return b.mass > 0 ? 4 * b.mass / (dt * dt) : b.stiffness; };
     const ContactBody &a = body_at(point_a), &b = body_at(point_b);
     const double smaller = std::min(of(a), of(b)), larger = std::max(of(a), of(b));
     return (a.mass > 0) != (b.mass > 0) && std::isfinite(larger) ? std::sqrt(smaller * larger) : smaller;
   }
-  /// Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that bodies of one μ have that μ between
-  /// them, and what is smooth slides on everything. `common` is that of bodies without one of their own.
+  /// Returns Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that bodies of equal μ have that μ
+  /// between them, and a frictionless body slides on everything. `common` is the default μ of bodies without
+  /// their own.
   double friction(int point_a, int point_b, double common) const {
     const double a = body_at(point_a).friction.value_or(common),
                  b = body_at(point_b).friction.value_or(common);
@@ -99,9 +101,9 @@ class ContactSurface {
   }
   /// True for points of a codimensional triangle: the centre of a sphere, an end of a capsule's axis.
   bool is_round(int point) const { return round_triangle(point) >= 0; }
-  /// That triangle, the first of several; −1: none.
+  /// Returns that triangle, the first of several; −1: none.
   int round_triangle(int point) const { return round_triangles_[static_cast<std::size_t>(point)]; }
-  /// How many triangles share a point or an edge.
+  /// Return the number of triangles that share a point or an edge.
   int triangles_at_point(int p) const { return point_shares_[static_cast<std::size_t>(p)]; }
   int triangles_at_edge(int e) const { return edge_shares_[static_cast<std::size_t>(e)]; }
 

@@ -1,8 +1,8 @@
-// Contact energy as a sum over pairs of features that counts every contact of a vertex once.
+// Contact terms write contact energy as a sum over feature pairs that counts every contact of a vertex once.
 //
 // A vertex v meets a surface S at its distance d(v, S). The pairs of v with single triangles overlap: above an
 // edge v is as near to two triangles, above a corner to six. Inclusion and exclusion over the triangles T,
-// edges e and corners p of S removes what is counted twice,
+// edges e and corners p of S removes double counting,
 //
 //   W(v) = Σ_T b(d(v, T)) + Σ_e c_e b(d(v, e)) + Σ_p c_p b(d(v, p)),
 //   c_e = 1 − n_e,   c_p = 1 − n_p − Σ_{e ∋ p} c_e,
@@ -12,12 +12,12 @@
 // wherever its nearest point lies. All coefficients are constant, so that W is as smooth as b and distances
 // are: its gradient and Hessian are those of the terms.
 //
-// The centre of a sphere is as near to many triangles of cloth that lies on it. There the vertices of the cloth
-// act first: what a round body meets inside faces and edges acts from half the range on.
+// The centre of a sphere is as near to many triangles of cloth that lies on it. There the vertices of the
+// cloth act first: contact of a round body inside faces and edges acts from half the range on.
 //
 // Two edges touch where both closest points are inside them; towards their ends and where they are parallel
-// the vertices do it all, and the term fades. That factor alone is taken where the terms are made, and
-// constant from there on. docs/theory/contact.md.
+// vertex contacts take over, and the term fades. Only that factor is evaluated where the terms are made, and
+// constant from then on. docs/theory/contact.md.
 #pragma once
 
 #include <array>
@@ -33,23 +33,23 @@ namespace muslin {
 struct ContactTerm {
   enum class Kind : std::uint8_t { point_plane, vertex_triangle, vertex_edge, vertex_vertex, edge_edge };
   Kind kind = Kind::point_plane;
-  std::array<int, 4> points = {-1, -1, -1, -1};  ///< those of the first feature, then of the second; −1: none
+  std::array<int, 4> points = {-1, -1, -1, -1};  ///< of the first feature, then of the second; −1: none
   int plane = -1;                                ///< of point_plane
-  std::uint64_t key = 0;  ///< ContactPair::key() of the pair that it is of; 0 of edges and corners left out
+  std::uint64_t key = 0;            ///< ContactPair::key() of its pair; 0 for subtracted edges and corners
   double thickness = 0, range = 0;  ///< as those of ContactPair [m]
-  double stiffness = 0;             ///< negative where it takes away what others count twice [N/m]
+  double stiffness = 0;             ///< negative where it cancels double counting [N/m]
 
   int first_size() const { return kind == Kind::edge_edge ? 2 : 1; }
 };
 
 PairGeometry term_geometry(const ContactSurface& surface, const ContactTerm& term, ConstVectors x);
 
-/// All terms that are or may come into range near the points of `distances`: pairs whose gap is less than
-/// PairDistances::ranges_known ranges, rigid bodies being stopped within `dt` [s]. Terms of one vertex follow
-/// one another. Pairs without a gap are left out.
+/// Returns all terms that are or may come into range near the points of `distances`: pairs whose gap is less
+/// than PairDistances::ranges_known ranges; rigid bodies are stopped within `dt` [s]. Terms of one vertex are
+/// consecutive. Pairs without a gap are left out.
 std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt);
 
-/// Terms of one vertex that have the same closest points, as one.
+/// The merged terms of one vertex with the same closest points.
 struct MergedContact {
   std::array<int, 4> points = {-1, -1, -1, -1};
   int first_size = 1;
@@ -62,7 +62,8 @@ struct MergedContact {
   double distance = 0;              ///< [m]
 };
 
-/// What is in range at x (#P by 3, [m]), in the order of the terms. What adds up to nothing is left out.
+/// Returns the contacts in range at x (#P by 3, [m]), in the order of the terms. Terms that cancel are left
+/// out.
 std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::span<const ContactTerm> terms,
                                            ConstVectors x);
 

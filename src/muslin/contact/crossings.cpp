@@ -19,7 +19,7 @@ constexpr std::size_t listed = 8;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-/// Some triangle of each point and edge, −1: none.
+/// One triangle of each point and edge, −1: none.
 struct Owners {
   std::vector<int> of_point, of_edge;
 
@@ -88,7 +88,7 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
       if (at.distance < 0) c.kind = Crossing::Kind::beneath;
       c.first_triangle = owners.of_point[index(pair.first)];
     }
-    // On the surface of the thinner body: the middle of a ball is where nobody sees anything.
+    // A point on the surface of the thinner body, since the centre of a ball is not visible.
     const std::size_t size = index(first_feature_size(pair.kind)), count = index(pair.point_count());
     const bool second_is_thinner = pair.kind != PairKind::point_plane &&
                                    surface.radius_of(pair.points[last]) < surface.radius_of(pair.points[0]);

@@ -1,5 +1,5 @@
-// What is wrong with positions from which contact cannot start: surfaces that cross, or are closer than their
-// thickness lets them be.
+// Finds and describes crossings, positions from which contact cannot start: surfaces that cross, or are
+// closer than their thickness allows.
 #pragma once
 
 #include <cstddef>
@@ -16,31 +16,30 @@ namespace muslin {
 struct Crossing {
   enum class Kind {
     crossing,   ///< two triangles meet, by the exact test
-    too_close,  ///< no farther than their thicknesses, or a vertex inside a ball, a capsule
+    too_close,  ///< within their thicknesses, or a vertex inside a ball or capsule
     beneath,    ///< a vertex beneath a plane
   };
   Kind kind = Kind::crossing;
   int first_body = 0, second_body = 0;  ///< of the surface
-  /// Of the surface; −1 for a plane, or for a vertex that belongs to no triangle.
+  /// Triangles of the surface; −1 for a plane, or for a vertex that belongs to no triangle.
   int first_triangle = -1, second_triangle = -1;
   Vec3 at = Vec3::Zero();  ///< where [m]
 
   friend bool operator==(const Crossing&, const Crossing&) = default;
 };
 
-/// The first `limit` at q (#V by 3, [m]): triangles that meet in ascending order, then what is too close,
-/// each two triangles once. Pairs of bodies that may not touch are left out. Errors: usage, if a position is
-/// not finite.
+/// Returns the first `limit` crossings at q (#V by 3, [m]): triangles that meet in ascending order, then
+/// pairs that are too close, each pair of triangles once. Pairs of bodies that may not touch are left out.
+/// Errors: usage, if a position is not finite.
 std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, std::size_t limit = 1000000);
 
-/// One line, such as: face 12 of "cloth" crosses face 3 of "table" near (0.1, 0.2, 0.3) m.
+/// Returns one line, such as: face 12 of "cloth" crosses face 3 of "table" near (0.1, 0.2, 0.3) m.
 std::string describe(const ContactModel& model, const Crossing& crossing);
 
-/// What to do about them: to move apart what crosses, or to weld a mesh that meets itself in vertices at one
-/// place.
+/// Returns advice on removing them: move crossing bodies apart, or weld a mesh with coincident vertices.
 std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found);
 
-/// Throws Error(input) that lists the first few, if there is any; at `place`, perhaps of the scene.
+/// Throws Error(input) at `place` that lists the first few crossings, if there are any.
 void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& place = {});
 
 }  // namespace muslin

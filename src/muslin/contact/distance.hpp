@@ -1,6 +1,6 @@
-// Distances between the features of surfaces: a vertex and a triangle, two edges. (A point and a plane need
-// no function.) Triangles may be needles, segments or points, edges may be parallel or points; what comes out
-// is always a pair of points of the two features, never NaN for finite input.
+// Computes distances between surface features: a vertex and a triangle, two edges. (A point and a plane need
+// no function.) Triangles may be needles, segments or points, edges may be parallel or points; the result is
+// always a pair of points of the two features, never NaN for finite input.
 //
 // Both distances are written as one linear combination of the four points,
 //
@@ -21,7 +21,7 @@ namespace muslin {
 
 enum class PairKind { vertex_triangle, edge_edge, point_plane };
 
-/// How many of the four points belong to the first feature, the others to the second.
+/// Returns the number of the four points that belong to the first feature; the others belong to the second.
 constexpr int first_feature_size(PairKind kind) { return kind == PairKind::edge_edge ? 2 : 1; }
 
 struct ClosestPoints {
@@ -38,7 +38,7 @@ struct ClosestPoints {
   }
 };
 
-/// The point nearest to p on the segment a b, as t in a + t (b − a), 0 ≤ t ≤ 1.
+/// Returns the point nearest to p on the segment a b, as t in a + t (b − a), 0 ≤ t ≤ 1.
 inline double closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 u = b - a;
   const double length = u.squaredNorm();
@@ -51,7 +51,7 @@ inline ClosestPoints closest_vertex_triangle(const Vec3& p, const Vec3& a, const
   const Vec3 normal = u.cross(v);
   const double area = normal.squaredNorm();
   ClosestPoints result;
-  // Below this the normal is mostly rounding: a needle is as good as its edges.
+  // Below this the normal is mostly rounding error: the edges suffice for a needle.
   if (area > 1e-24 * u.squaredNorm() * v.squaredNorm()) {
     const double s = w.cross(v).dot(normal) / area, t = u.cross(w).dot(normal) / area;
     if (s >= 0 && t >= 0 && s + t <= 1) {
@@ -101,7 +101,7 @@ inline ClosestPoints closest_edge_edge(const Vec3& a0, const Vec3& a1, const Vec
   return best;
 }
 
-/// Of a pair of the first two kinds: vertex, triangle or a₀, a₁, b₀, b₁.
+/// Returns the closest points of a pair of the first two kinds: vertex, triangle or a₀, a₁, b₀, b₁.
 inline ClosestPoints closest_points(PairKind kind, std::span<const Vec3, 4> x) {
   return kind == PairKind::vertex_triangle ? closest_vertex_triangle(x[0], x[1], x[2], x[3])
                                            : closest_edge_edge(x[0], x[1], x[2], x[3]);

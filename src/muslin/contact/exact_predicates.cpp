@@ -10,7 +10,7 @@
 namespace muslin {
 namespace {
 
-/// a·(b×c) with rows given as exact differences.
+/// Computes a·(b×c) with rows given as exact differences.
 template <class Number, class Product2, class Product3>
 auto determinant(const std::array<Number, 3>& a, const std::array<Number, 3>& b,
                  const std::array<Number, 3>& c, const Product2& minor, const Product3& times) {
@@ -67,7 +67,7 @@ bool fits_expansions(const Vec3& p) {
   return true;
 }
 
-/// The turn a b c, seen along the coordinate axis `dropped`.
+/// Returns the orientation of a b c, projected along the coordinate axis `dropped`.
 int orientation_in_plane(const Vec3& a, const Vec3& b, const Vec3& c, int dropped) {
   Vec3 p = a, q = b, r = c, apex = a;
   p[dropped] = q[dropped] = r[dropped] = 0;
@@ -79,14 +79,14 @@ bool lexicographically_less(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// An axis along which three points project onto a triangle, −1 if they lie on one line.
+/// Returns an axis along which three points project onto a triangle, −1 if they lie on one line.
 int projection_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int axis = 0; axis < 3; ++axis)
     if (orientation_in_plane(a, b, c, axis) != 0) return axis;
   return -1;
 }
 
-/// q on the segment p r, all three on one line.
+/// Returns true if q is on the segment p r, all three on one line.
 bool between(const Vec3& p, const Vec3& q, const Vec3& r) {
   const auto ascend = [&](const Vec3& low, const Vec3& high) {
     return !lexicographically_less(q, low) && !lexicographically_less(high, q);
@@ -105,7 +105,8 @@ bool segments_meet_in_plane(const Segment& s, const Segment& t, int axis) {
   };
   const int s0 = side(t, s[0]), s1 = side(t, s[1]), t0 = side(s, t[0]), t1 = side(s, t[1]);
   if (s0 * s1 < 0 && t0 * t1 < 0) return true;
-  // Touching in an end point. A segment that is a point has everything on its line, and only itself between.
+  // Touching in an end point. For a segment that is a point, all points are on its line, and only itself
+  // between its ends.
   const auto on = [](int sign, const Vec3& p, const Segment& line) {
     return sign == 0 && between(line[0], p, line[1]);
   };
@@ -122,7 +123,7 @@ bool segment_meets_triangle_in_plane(const Segment& s, const Triangle& t, int ax
   return false;
 }
 
-/// As segment_meets_triangle, the sides of the segment's ends known.
+/// As segment_meets_triangle, given the sides of the segment's ends.
 bool segment_meets_triangle(const Segment& s, const Triangle& t, int side0, int side1) {
   if (side0 * side1 > 0) return false;
   if (side0 != 0 || side1 != 0) {
@@ -175,7 +176,7 @@ bool segments_meet(const Segment& s, const Segment& t) {
   if (axis < 0) axis = projection_axis(t[0], t[1], s[0]);
   if (axis < 0) axis = projection_axis(t[0], t[1], s[1]);
   if (axis >= 0) return segments_meet_in_plane(s, t, axis);
-  // All on one line: where the order along it is that of the coordinates.
+  // All on one line: their order along it is that of the coordinates.
   return between(t[0], s[0], t[1]) || between(t[0], s[1], t[1]) || between(s[0], t[0], s[1]);
 }
 

@@ -1,4 +1,4 @@
-// Boxes of features in groups of eight, compared all at once: the inner loops of the broad phase.
+// Compares boxes of features in groups of eight: the inner loops of the broad phase.
 #pragma once
 
 #include <bit>
@@ -13,7 +13,7 @@ namespace muslin {
 
 constexpr int lane_count = 8;
 
-/// Eight values as one; GCC and clang make of it what registers there are.
+/// Eight values as one; GCC and clang map it to the available registers.
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 using Byte8 = std::int8_t __attribute__((vector_size(8)));
@@ -23,7 +23,7 @@ using LaneBits = std::uint64_t;
 inline int first_lane(LaneBits bits) { return std::countr_zero(bits) / 8; }
 inline LaneBits lanes_after(int lane) { return ~LaneBits{0} << 7 << (8 * lane + 1); }
 
-/// A box at the beginning and at the end; where nothing moves only the first counts.
+/// A box at the beginning and at the end; without motion only the first counts.
 struct MovingBox {
   FloatBox ends[2];
 };
@@ -62,13 +62,13 @@ struct FeatureGroups {
   BoxLanes& boxes(int end, std::size_t group) { return end == 0 ? lanes[group].begin : ends[group]; }
 };
 
-/// A lane of `mask` is −1 or 0.
+/// Returns the lanes of `mask`, −1 or 0 each, as bits.
 MUSLIN_INLINE LaneBits as_bits(const Int8& mask) {
   return std::bit_cast<LaneBits>(__builtin_convertvector(mask, Byte8)) & 0x0101010101010101U;
 }
 
-/// The lanes of a group that may overlap low(end, axis) … high(end, axis) at some time. What is apart along
-/// an axis at both ends, on the same side, is so in between.
+/// Returns the lanes of a group that may overlap low(end, axis) … high(end, axis) at some time. Boxes
+/// separated along an axis at both ends, on the same side, are separated in between.
 template <int ends, class Low, class High>
 MUSLIN_INLINE LaneBits overlapping(const FeatureGroups& groups, int group, const Low& low, const High& high) {
   const auto g = static_cast<std::size_t>(group);
@@ -92,8 +92,7 @@ MUSLIN_INLINE LaneBits lanes_in_box(const FeatureGroups& groups, int group, cons
       [&](int end, int k) { return box.ends[end].high[k]; });
 }
 
-/// The lanes of group h that may overlap lane i of group g and share no point with it, which has `a_points`
-/// of them.
+/// Returns the lanes of group h that may overlap lane i of group g and share none of its `a_points` points.
 template <int ends, int a_points, int b_points>
 MUSLIN_INLINE LaneBits lanes_near(const FeatureGroups& a, int g, int i, const FeatureGroups& b, int h) {
   const FeatureLanes &first = a.lanes[static_cast<std::size_t>(g)],

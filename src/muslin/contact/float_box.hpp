@@ -1,4 +1,4 @@
-// Boxes in float for the broad phase: four lanes each, compared in one go.
+// FloatBox is a box in float for the broad phase: four lanes, compared at once.
 #pragma once
 
 #include <bit>
@@ -23,13 +23,13 @@ struct alignas(32) FloatBox {
   }
 };
 
-/// Whether any of the four is true.
+/// Returns true if any of the four lanes is true.
 inline bool any(const Int4& mask) {
   const auto halves = std::bit_cast<Long2>(mask);
   return (halves[0] | halves[1]) != 0;
 }
 
-/// The floats just below or equal, and just above or equal: at most two steps away.
+/// Return a float at or just below, and at or just above the value: at most two floats away.
 inline float rounded_down(double value) {
   const auto f = static_cast<float>(value);
   return f - (std::fabs(f) * std::numeric_limits<float>::epsilon() + std::numeric_limits<float>::min());

@@ -86,7 +86,8 @@ struct Tree {
   }
 };
 
-/// The triangle with its shared vertices first, as the other's; returns how many are shared.
+/// Reorders the triangles with their shared vertices first, in the same order; returns the number of shared
+/// ones.
 int sort_shared(Vec3i& a, Vec3i& b) {
   int shared = 0;
   for (int i = 0; i < 3; ++i) {
@@ -106,7 +107,7 @@ bool has_repeated_vertex(const Vec3i& t) { return t[0] == t[1] || t[1] == t[2] |
 bool cross(ConstVectors x, Vec3i a, Vec3i b) {
   const auto at = [&](int v) -> const Vec3& { return x[static_cast<std::size_t>(v)]; };
   if (has_repeated_vertex(a) || has_repeated_vertex(b)) {
-    // A segment or point that hangs on a triangle by a vertex is part of its outline.
+    // A segment or point that shares a vertex with a triangle is part of its outline.
     for (const int v : a)
       if ((b.array() == v).any()) return false;
     return triangles_meet({at(a[0]), at(a[1]), at(a[2])}, {at(b[0]), at(b[1]), at(b[2])});
@@ -123,7 +124,8 @@ bool cross(ConstVectors x, Vec3i a, Vec3i b) {
   }
 }
 
-/// A point near the common part: where edges of one pierce the other, or the middle of the common box.
+/// Returns a point near the intersection: where edges of one pierce the other, or the middle of the common
+/// box.
 Vec3 place(ConstVectors x, const Vec3i& a, const Vec3i& b, const Box& common) {
   Vec3 sum = Vec3::Zero();
   int count = 0;

@@ -1,5 +1,5 @@
-// Which triangles of a surface cross each other: the referee that contact is judged by. Shares no code with
-// the contact search, the distances or the step limiter.
+// Finds the triangles of a surface that cross each other: the reference for contact. Shares no code with the
+// contact search, the distances or the step limiter.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +19,17 @@ struct Intersection {
 };
 
 struct IntersectionOptions {
-  /// Stop after so many have been found; these are the first of the full list.
+  /// Most intersections to find; these are the first of the full list.
   std::size_t limit = std::numeric_limits<std::size_t>::max();
   /// Pairs for which this returns false are left out, such as triangles of two fixed colliders; empty: none.
   /// Called by several threads.
   std::function<bool(int, int)> wanted;
 };
 
-/// All pairs of triangles (#T by 3, indices into positions, #V by 3) that meet, in ascending order. Exact:
-/// touching counts, and so do triangles in one plane. Triangles that share a vertex or an edge (by index)
-/// count if they meet elsewhere too; triangles with the same three vertices always do. Repeated indices make
-/// a segment or a point. Errors: usage, if a position is not finite or an index out of range.
+/// Returns all pairs of triangles (#T by 3, indices into positions, #V by 3) that meet, in ascending order.
+/// Exact: touching counts, and so do triangles in one plane. Triangles that share a vertex or an edge (by
+/// index) count if they meet elsewhere too; triangles with the same three vertices always do. Repeated
+/// indices make a segment or a point. Errors: usage, if a position is not finite or an index out of range.
 std::vector<Intersection> find_intersections(ConstVectors positions, std::span<const Vec3i> triangles,
                                              const IntersectionOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Integers of any length, for the few determinants whose numbers are too large or too small for doubles.
+// LongInteger is an integer of any length, for the few determinants out of the range of doubles.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// Where the points of a surface may be: each in a box that goes straight from where it is at the beginning to
-// where it is at the end, all of them at the same pace. What moves as a whole stays apart in such boxes,
-// where boxes around whole ways would overlap.
+// MovingBoxes bounds the points of a surface: each in a box that moves in a straight line from its beginning
+// to its end, all at the same pace. Features that move together stay separated in such boxes, where boxes
+// around whole displacements would overlap.
 #pragma once
 
 #include <algorithm>
@@ -29,9 +29,9 @@ class MovingBoxes {
   }
 
   std::size_t size() const { return boxes_[0].size(); }
-  /// All boxes will be set anew.
+  /// Call before setting all boxes anew.
   void restart() { moving_ = false; }
-  /// Point p goes from `from` to `to`, give or take `margin` [m].
+  /// Point p moves from `from` to `to`, ± `margin` [m].
   void move(std::size_t p, const Vec3& from, const Vec3& to, double margin) {
     moving_ = true;
     boxes_[0][p] = {from.array() - margin, from.array() + margin};
@@ -46,12 +46,12 @@ class MovingBoxes {
   const PointBox& begin(std::size_t p) const { return boxes_[0][p]; }
   const PointBox& end(std::size_t p) const { return boxes_[1][p]; }
   const std::vector<PointBox>& at(int end) const { return boxes_[static_cast<std::size_t>(end)]; }
-  /// Around the whole way.
+  /// Returns a box around the whole displacement.
   PointBox around(std::size_t p) const {
     const PointBox &b = begin(p), &e = end(p);
     return {b.lower.cwiseMin(e.lower), b.upper.cwiseMax(e.upper)};
   }
-  /// Whether any box may go anywhere.
+  /// True if any box may move.
   bool moving() const { return moving_; }
 
  private:

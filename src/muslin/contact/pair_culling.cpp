@@ -8,7 +8,7 @@
 #include "muslin/core/vector_code.hpp"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wpsabi"  // how vectors are returned does not matter where all is inlined
+#pragma GCC diagnostic ignored "-Wpsabi"  // the ABI of vectors is irrelevant in inlined code
 #endif
 
 namespace muslin {
@@ -34,7 +34,7 @@ MUSLIN_INLINE Lanes3 select(const Int8& mask, const Lanes3& a, const Lanes3& b) 
 }
 constexpr float tiny = 1e-30F;
 
-/// p − the nearest point of the segment a … a + u, w = p − a.
+/// Returns p − the nearest point of the segment a … a + u, w = p − a.
 MUSLIN_INLINE Lanes3 to_segment(const Lanes3& w, const Lanes3& u) {
   const Float8 zero = {}, one = zero + 1;
   const Float8 t = smaller(larger(dot(u, w) / larger(dot(u, u), zero + tiny), zero), one);
@@ -48,7 +48,7 @@ MUSLIN_INLINE void keep_nearer(const Lanes3& d, Lanes3& best, Float8& square) {
   square = nearer ? s : square;
 }
 
-/// Closest point of the triangle x[1], x[2], x[3] to x[0].
+/// Finds the point of the triangle x[1], x[2], x[3] closest to x[0].
 MUSLIN_INLINE Lanes3 vertex_triangle(const Lanes3* x) {
   const Float8 zero = {}, one = zero + 1;
   const Lanes3 u = minus(x[2], x[1]), v = minus(x[3], x[1]), w = minus(x[0], x[1]);
@@ -62,7 +62,7 @@ MUSLIN_INLINE Lanes3 vertex_triangle(const Lanes3* x) {
   return select((s >= zero) & (t >= zero) & (s + t <= one), times(dot(w, n) / area, n), best);
 }
 
-/// Closest points of the edges x[0] x[1] and x[2] x[3].
+/// Finds the closest points of the edges x[0] x[1] and x[2] x[3].
 MUSLIN_INLINE Lanes3 edge_edge(const Lanes3* x) {
   const Float8 zero = {}, one = zero + 1;
   const Lanes3 u = minus(x[1], x[0]), v = minus(x[3], x[2]), r = minus(x[0], x[2]);
@@ -90,7 +90,7 @@ void PairCulling::set_points(const ContactSurface& surface, ConstVectors at, con
     all.extend(around.upper);
   }
   centre_ = all.isEmpty() ? Vec3(Vec3::Zero()) : all.center();
-  // Some ten roundings of coordinates of twice this size.
+  // About ten roundings of coordinates of twice this size.
   rounding_ = all.isEmpty() ? 0 : static_cast<float>(4e-6 * all.sizes().maxCoeff());
   moving_ = boxes.moving();
   points_.resize(at.size());

@@ -1,6 +1,6 @@
-// Which pairs of features may come close while their points move with boxes. A plane across the closest
-// points of a pair proves for most that they may not. In float, eight pairs at once; errs on the side of
-// keeping a pair.
+// PairCulling finds the feature pairs that may come close while their points move with boxes. A plane across
+// the closest points of a pair rules most of them out. In float, eight pairs at once; conservative: errors
+// only keep a pair.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ namespace muslin {
 
 class PairCulling {
  public:
-  /// Each point in its box (#P); planes are laid across the closest points at `at` (#P by 3, [m]).
+  /// Sets each point with its box (#P); planes are laid across the closest points at `at` (#P by 3, [m]).
   void set_points(const ContactSurface& surface, ConstVectors at, const MovingBoxes& boxes);
-  /// The boxes of those points alone whose `moved` (#P) is not zero.
+  /// Sets only the boxes of points whose `moved` (#P) is not zero.
   void set_boxes(std::span<const std::uint8_t> moved, const MovingBoxes& boxes);
 
   /// For pair i, given by its four points: distance[i] is negative unless it may come within radius + radius

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t grain = 2048;
 
-/// The way of a point since the pairs were found [m]; padded, so that it is one load.
+/// Displacement of a point since the pairs were found [m]; padded, so that it is one load.
 using Way = std::array<float, 4>;
 
 float squared_difference(const Way& a, const Way& b) {
@@ -21,7 +21,7 @@ float squared_difference(const Way& a, const Way& b) {
   return x * x + y * y + z * z;
 }
 
-/// By how much the features of a pair can have come closer [m].
+/// Returns a bound of how much closer the features of a pair can have come [m].
 float approach(const ContactPair& pair, const std::vector<Way>& ways) {
   const Way &a = ways[static_cast<std::size_t>(pair.points[0])],
             &b = ways[static_cast<std::size_t>(pair.points[1])],

@@ -1,9 +1,9 @@
-// How far apart the features of all candidate pairs are at one place, found once for all who ask: contact
+// PairDistances computes the distances of all candidate pairs at one position, once for all users: contact
 // energy, step limiter, diagnostics.
 //
 // Most candidates are far apart, and remain so while points move: a pair that was d apart when it was found
-// is at least d − max |δᵢ − δⱼ| apart now, over the ways δ of the points i of one feature and j of the other
-// since then. Only where that is not enough are the closest points found.
+// is at least d − max |δᵢ − δⱼ| apart now, over the displacements δ of the points i of one feature and j of
+// the other since then. The closest points are found only where this bound is not enough.
 #pragma once
 
 #include <cstddef>
@@ -17,27 +17,28 @@ namespace muslin {
 
 class PairDistances {
  public:
-  /// The geometry of all pairs is known whose gap is less than this share of the contact distance.
+  /// The geometry is known of all pairs whose gap is less than this share of the contact distance.
   static constexpr double ranges_known = 1.5;
 
   /// `candidates` must outlive this.
   explicit PairDistances(const ContactCandidates& candidates) : candidates_(&candidates) {}
 
-  /// To points x (#P by 3, [m]); does nothing if they are there already.
+  /// Updates to points x (#P by 3, [m]); does nothing if x is unchanged.
   void update(ConstVectors x);
-  /// The candidates have changed: the next update looks at all anew.
+  /// Call when the candidates have changed: the next update starts anew.
   void forget() { x_.clear(); }
 
   const ContactCandidates& candidates() const { return *candidates_; }
   ConstVectors points() const { return x_; }
-  /// Of pair i: `weights` and `normal` only where `is_known(i)`, else `distance` is a lower bound alone.
+  /// Geometry of pair i: `weights` and `normal` only where `is_known(i)`, else only `distance`, a lower
+  /// bound.
   const PairGeometry& operator[](std::size_t i) const { return geometry_[i]; }
   bool is_known(std::size_t i) const { return known_[i] != 0; }
-  /// Pair i, made known; several threads may ask, each for pairs of its own.
+  /// Computes the geometry of pair i if not known; several threads may call it, each for its own pairs.
   const PairGeometry& find(std::size_t i);
 
-  /// The smallest distance less thickness of all pairs, if that is below the contact distance: then it is
-  /// that of the whole surface; infinite otherwise [m].
+  /// Returns the smallest gap of all pairs, if it is below the contact distance: then it is that of the whole
+  /// surface; infinite otherwise [m].
   double smallest_gap() const;
 
  private:

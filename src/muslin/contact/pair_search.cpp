@@ -25,7 +25,7 @@ struct LeafPair {
   int a, b;
 };
 
-/// What eight triangles own, as ranges of groups of eight.
+/// Features owned by eight triangles, as ranges of groups of eight.
 struct Leaf {
   MovingBox box;
   int first_points = 0, last_points = 0;
@@ -74,7 +74,7 @@ MUSLIN_INLINE void edges_against_edges(const Groups& groups, const LeafPair& pai
     const FeatureLanes& first = groups.edges.lanes[static_cast<std::size_t>(g)];
     const LaneBits rows = lanes_in_box<ends>(groups.edges, g, b.box);
     if (rows == 0) continue;
-    // Within a leaf each pair once: later groups, and later lanes of the same group.
+    // Each pair within a leaf once: later groups, and later lanes of the same group.
     for (int h = pair.a == pair.b ? g : b.first_edges; h < b.last_edges; ++h) {
       if (lanes_in_box<ends>(groups.edges, h, a.box) == 0) continue;
       const FeatureLanes& second = groups.edges.lanes[static_cast<std::size_t>(h)];
@@ -127,7 +127,7 @@ struct PairSearch::Tree {
   struct NodePair {
     int a, b;
   };
-  /// What a thread needs for a task; kept from call to call.
+  /// Memory of a task, kept from call to call.
   struct Task {
     NodePair root{};
     std::vector<NodePair> stack;
@@ -135,17 +135,17 @@ struct PairSearch::Tree {
     FeaturePairs found;
   };
   std::shared_ptr<const ContactSurface> surface;
-  bool ask_bodies = false, ask_points = false;  ///< whether pairs have to be left out afterwards
+  bool ask_bodies = false, ask_points = false;  ///< true if pairs have to be removed afterwards
   std::vector<Node> nodes;
   std::vector<int> order;  ///< triangles by leaf
   Groups groups;
   std::vector<Task> tasks;
   std::vector<MovingBox> node_boxes;
   std::vector<FloatBox> point_boxes[2];  ///< at both ends
-  int ends = 1;                          ///< of boxes, that count: two where any moves
+  int ends = 1;                          ///< ends of boxes in use: two if any moves
   std::vector<std::uint8_t> lone;        ///< points that are a triangle (a, a, a)
   std::span<const std::uint8_t> moved;   ///< of the present search; empty: all
-  std::vector<std::uint8_t> node_moved;  ///< whether there is such a point in the node
+  std::vector<std::uint8_t> node_moved;  ///< true if the node has such a point
 
   Tree(std::shared_ptr<const ContactSurface> surface_, ConstVectors positions)
       : surface(std::move(surface_)) {
@@ -239,7 +239,7 @@ struct PairSearch::Tree {
   bool is_leaf(int node) const { return nodes[static_cast<std::size_t>(node)].right < 0; }
   int right(int node) const { return nodes[static_cast<std::size_t>(node)].right; }
 
-  /// The pairs to go on with instead of (a, b).
+  /// Calls push for the child pairs that replace (a, b).
   template <class Push>
   void descend(NodePair pair, const Push& push) const {
     const auto [a, b] = pair;
@@ -261,7 +261,7 @@ struct PairSearch::Tree {
     }
   }
 
-  /// Cuts the descent into tasks, by the shape of the tree alone.
+  /// Splits the traversal into tasks, by the shape of the tree alone.
   void make_tasks() {
     std::vector<NodePair> level;
     if (!nodes.empty()) level.push_back({0, 0});
@@ -340,7 +340,7 @@ struct PairSearch::Tree {
     }
   }
 
-  /// What is apart along an axis at both ends, on the same side, is so in between.
+  /// Boxes separated along an axis at both ends, on the same side, are separated in between.
   bool overlap(int a, int b) const {
     const FloatBox *const p = node_boxes[static_cast<std::size_t>(a)].ends,
                           *const q = node_boxes[static_cast<std::size_t>(b)].ends;
@@ -387,8 +387,8 @@ struct PairSearch::Tree {
     });
   }
 
-  /// What the boxes do not know: bodies that may not touch, and that a vertex meets a lone point as that
-  /// point meets the vertex's triangles.
+  /// Pairs that boxes cannot exclude: bodies that may not touch, and a vertex against a lone point, which is
+  /// also found as that point against the vertex's triangles.
   bool unwanted(int p, int q) const {
     return ask_bodies && !surface->may_touch(surface->body_of(p), surface->body_of(q));
   }

@@ -1,8 +1,9 @@
-// The broad phase: which features of a contact surface may come close while its points move with boxes.
+// PairSearch is the broad phase: it finds features of a contact surface that may come close while its points
+// move with boxes.
 //
-// One binary tree over the triangles, built once; its shape stays, its boxes are fitted anew to each motion
+// One binary tree over the triangles, built once; its shape is fixed, its boxes are refitted to each motion
 // (van den Bergen 1997). Leaves hold eight triangles, whose boxes are compared in vector code. Boxes are in
-// float, rounded outwards. Pairs of leaves come from descending the tree against itself; features come from
+// float, rounded outwards. Pairs of leaves come from traversing the tree against itself; features come from
 // pairs of triangles by ownership (Curtis, Tamstorf, Manocha, Fast Collision Detection for Deformable Models
 // using Representative-Triangles, 2008), so that each pair of features comes once.
 #pragma once
@@ -34,22 +35,20 @@ struct FeaturePairs {
   std::vector<EdgeEdge> edge_edge;
 };
 
-/// Not safe to use from several threads at once; parallel inside. The order of the pairs is the same for any
-/// thread count.
+/// Not thread-safe; parallel inside. The order of the pairs is the same for any thread count.
 class PairSearch {
  public:
-  /// The tree is fitted to `positions` (#P by 3, [m]), best those at rest, where neighbours on the surface
-  /// are neighbours in space.
+  /// Builds the tree for `positions` (#P by 3, [m]), best those at rest, where neighbours on the surface are
+  /// neighbours in space.
   PairSearch(std::shared_ptr<const ContactSurface> surface, ConstVectors positions);
   ~PairSearch();
   PairSearch(PairSearch&&) noexcept;
   PairSearch& operator=(PairSearch&&) noexcept;
 
-  /// All pairs that can come within radius + radius + `reach` [m] of each other while every point stays in
-  /// its box (#P), at the same time in their motion; and some more, for boxes are not the features. `found`
-  /// is overwritten; its memory is used again.
-  /// `moved` (#P, or empty for all points): only pairs that have a point where this is not zero; the boxes of
-  /// the others, and `reach`, are those of the last search.
+  /// Finds all pairs that can come within radius + radius + `reach` [m] of each other while every point stays
+  /// in its box (#P), at the same time of their motion; and some more, as boxes only bound the features.
+  /// `found` is overwritten; its memory is reused. `moved` (#P, or empty for all points): only pairs with a
+  /// point where this is not zero; the boxes of the others, and `reach`, are those of the last search.
   void find(const MovingBoxes& boxes, double reach, FeaturePairs& found,
             std::span<const std::uint8_t> moved = {});
 

@@ -16,19 +16,18 @@ namespace {
 constexpr std::size_t grain = 1024;
 /// Points with less weight in the closest points do not make a pair approach.
 constexpr double least_weight = 0.01;
-/// The share of a gap, or of the contact distance if that is less, that deflection leaves, and, near the
-/// floor, how many floors. Less would press surfaces that meet at speed so close that their contact becomes
-/// too stiff for few iterations; but what pushes others along keyframes needs room to go on.
+/// Share of a gap, or of the contact distance if that is less, that deflection leaves, and, near the floor,
+/// the number of floors. Smaller shares would let fast surfaces come so close that contact becomes too stiff
+/// for few iterations; but kinematic vertices that push others need room to move on.
 constexpr double kept_deflected = 0.5, kept_before_pushing = 0.2, kept_floors = 1.5;
-/// Deflection leaves this many times what every pair must keep.
+/// Deflection leaves this many times the share that every pair must keep.
 constexpr double kept_more = 1.1;
-/// Rounds of deflection at most: vertices against triangles, edges against edges, then both. Each carries a
-/// push on by a layer.
+/// Most rounds of deflection: vertices against triangles, edges against edges, then both. Each propagates a
+/// push by one layer.
 constexpr int deflections = 40;
-/// The share of its safe way that a pair is given, so that it keeps some gap for the next step.
+/// Share of its safe displacement that a pair may use, so that it keeps some gap for the next step.
 constexpr double given_share = 0.9;
-/// Rounds after which shortening is made stronger, and after which it stops vertices altogether, so that it
-/// ends.
+/// Rounds after which shortening is strengthened, and after which it stops vertices, to terminate.
 constexpr std::size_t patient_rounds = 8, last_rounds = 24;
 
 /// direction·u ≤ most for the step u of a vertex.
@@ -49,8 +48,8 @@ struct StepLimiter::Work {
   PairDistances& start;             ///< of the pairs at x
   ConstVectors x;                   ///< points
   std::vector<Vec3> u;              ///< their steps
-  std::vector<std::uint8_t> moved;  ///< points whose step has changed since the pairs were last judged
-  std::vector<double> factors;      ///< how much of their step pairs may take, 1 for nearly all
+  std::vector<std::uint8_t> moved;  ///< points with changed steps since the last judge()
+  std::vector<double> factors;      ///< safe share of the step by pair, 1 for nearly all
 
   Work(const SurfaceMap& map_, const StepLimits& limits_, std::span<const std::uint8_t> held_,
        PairDistances& start_)
@@ -79,15 +78,15 @@ struct StepLimiter::Work {
     return u[static_cast<std::size_t>(pair.points[static_cast<std::size_t>(i)])];
   }
 
-  /// How close a pair that is `distance` apart may come.
+  /// Returns the least distance allowed for a pair that is `distance` apart.
   double required_distance(const ContactPair& pair, double distance) const {
-    // What is closer than the floor, or than its thickness, comes no closer.
+    // A pair closer than the floor, or than its thickness, must not come closer.
     const double gap = distance - pair.thickness;
     const double least = std::max(limits.gap_floor, limits.kept_share * std::min(gap, pair.range));
     return gap > 0 ? pair.thickness + std::min(least, gap * (1 - 1e-6)) : distance * (1 - 1e-6);
   }
 
-  /// How much of its step pair i may take.
+  /// Returns the safe share of the step of pair i.
   double safe_factor(std::size_t i) const {
     const ContactPair& pair = pairs[i];
     const auto corners = [&](ConstVectors of) {
@@ -108,7 +107,7 @@ struct StepLimiter::Work {
       const double slack = at.distance - required_distance(pair, at.distance);
       return approach <= slack ? 1 : slack / approach;
     }
-    // Nothing moves far enough to matter, for nearly all pairs.
+    // Nearly all pairs move too little to matter.
     const int size_a = first_feature_size(pair.kind);
     double fastest = 0;
     for (int k = 0; k < size_a; ++k)
@@ -137,7 +136,7 @@ struct StepLimiter::Work {
     return {c.difference / c.distance(), c.distance(), c.weights};
   }
 
-  /// Half-spaces that keep the points of one side of a pair from moving along `direction` beyond `most`.
+  /// Adds half-spaces that keep the points of one side of a pair from moving along `direction` beyond `most`.
   void restrict(const ContactPair& pair, const PairGeometry& at, int begin, int end, const Vec3& direction,
                 double most, std::vector<HalfSpace>& out) const {
     for (int i = begin; i < end; ++i) {
@@ -153,7 +152,7 @@ struct StepLimiter::Work {
     }
   }
 
-  /// For a pair that comes too close during the step: takes the approach along the normal they then have.
+  /// Adds half-spaces for a pair that comes too close during the step, along its normal at that time.
   void restrict_pair(const ContactPair& pair, const PairGeometry& before_step, double factor,
                      std::vector<HalfSpace>& out) const {
     const PairGeometry at = geometry_at(pair, before_step, factor);
@@ -172,8 +171,8 @@ struct StepLimiter::Work {
     const double kept = std::max(kept_floors * limits.gap_floor, share * std::min(gap, pair.range));
     const double slack = std::max(0.0, gap - kept);
     if (approach_a + approach_b <= slack) return;
-    // Each side may use the slack in proportion to its approach; one that recedes leaves its way to the
-    // other, and what moves along keyframes is given way to.
+    // Each side may use the slack in proportion to its approach; a receding side leaves all to the other, and
+    // prescribed vertices have priority.
     double most_a = approach_a, most_b = approach_b;
     if (!a_yields || (b_yields && approach_a <= 0)) {
       most_b = slack - approach_a;
@@ -187,7 +186,7 @@ struct StepLimiter::Work {
     if (b_yields && most_b < approach_b) restrict(pair, at, size_a, count, at.normal, most_b, out);
   }
 
-  /// Judges the pairs of points whose step has changed; returns whether any comes too close.
+  /// Checks the pairs of points whose step has changed; returns whether any comes too close.
   bool judge(ConstVectors dq) {
     map.apply(dq, u);
     std::vector<std::uint8_t> found((pairs.size() + grain - 1) / grain, 0);
@@ -209,8 +208,8 @@ struct StepLimiter::Work {
     for (const SurfaceMap::Entry& e : map.column(vertex)) moved[static_cast<std::size_t>(e.vertex)] = 1;
   }
 
-  /// Takes away the excess normal approach of the pairs that come too close, of those for which chosen(kind);
-  /// notes in `deflected` (#V) which vertices that changes.
+  /// Removes the excess normal approach of the pairs with chosen(kind) that come too close; marks the changed
+  /// vertices in `deflected` (#V).
   template <class Chosen>
   void deflect(Vectors dq, const Chosen& chosen, std::vector<std::uint8_t>& deflected) {
     std::vector<std::vector<HalfSpace>> parts((pairs.size() + grain - 1) / grain);
@@ -250,7 +249,7 @@ struct StepLimiter::Work {
     }
   }
 
-  /// The largest factor that keeps a point in its box. Where that goes away from the point, none would.
+  /// Returns the largest factor that keeps a point in its box; 1 if the box has moved away from the point.
   double factor_within_box(std::size_t p) const {
     const PointBox& box = candidates.boxes().end(p);
     if (!box.contains(x[p])) return 1;
@@ -299,7 +298,7 @@ struct StepLimiter::Work {
   std::size_t clip(Vectors dq) {
     std::vector<double> by(dq.size());
     std::size_t count = 0;
-    // A shortened vertex of several may move a point out of its box again: until none is out.
+    // Shortening one of several vertices may move a point out of its box again: repeat until none is out.
     for (std::size_t round = 0;; ++round) {
       map.apply(dq, u);
       std::fill(by.begin(), by.end(), 1.0);
@@ -357,7 +356,7 @@ LimitReport StepLimiter::limit(PairDistances& at, Vectors dq, std::span<const st
   LimitReport report;
   Work work(*map_, limits_, held, at);
   std::vector<std::uint8_t> deflected(dq.size(), 0);
-  // Vertices first: what slides over a sheet would else be held by the edges that it passes.
+  // Vertices first: features sliding over a sheet would otherwise be stopped by the edges they pass.
   for (int round = 0; round < deflections && work.judge(dq); ++round) {
     const auto chosen = [round](PairKind kind) {
       return round > 1 || (kind == PairKind::edge_edge) == (round == 1);

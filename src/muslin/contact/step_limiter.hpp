@@ -1,13 +1,14 @@
-// Takes from a step what would make surfaces touch, locally: the guarantee that nothing ever crosses.
+// StepLimiter limits a displacement locally so that surfaces never touch, which guarantees that nothing
+// crosses.
 //
-//  1. A few passes take away only the excess normal approach of each pair; the rest of the motion stays.
-//  2. Vertices whose points would leave the boxes in which the pairs are known are shortened to stay within,
-//     unless a box goes away from its point: then the caller has to look where the point ends.
-//  3. Conservative advancement of each pair shortens the step of the vertices of those that still come too
-//     close; again for all pairs that these vertices touch, until there is none.
+//  1. A few passes remove only the excess normal approach of each pair; the rest of the motion stays.
+//  2. Displacements that would leave the boxes in which the pairs are known are shortened to stay within,
+//     unless a box moves away from its point: then the caller has to check where the point ends.
+//  3. Conservative advancement of each pair shortens the displacement of the vertices that still come too
+//     close; repeated for all pairs of these vertices, until none is left.
 //
-// The third part alone gives the guarantee (docs/theory/contact.md), the first makes it rarely needed. Never
-// one step length for all: a tight spot anywhere would freeze everything.
+// The third part alone gives the guarantee (docs/theory/contact.md), the first makes it rarely needed. There
+// is no common step length for all: one tight spot would stop all motion.
 #pragma once
 
 #include <cstddef>
@@ -23,24 +24,24 @@
 namespace muslin {
 
 struct StepLimits {
-  /// The gap that a step leaves every pair that had more [m]. Absolute: a share of the gap at the start would
-  /// let gaps shrink step by step until rounding lets features through.
+  /// Least gap that a step leaves to every pair that had more [m]. Absolute: a share of the gap at the start
+  /// would let gaps shrink step by step until rounding lets features through.
   double gap_floor = 1e-5;
-  /// And this share of what it had, so that no step ends where contact is far stiffer than where it began.
+  /// Least share of its gap that a pair keeps, so that contact is not far stiffer at the end of a step.
   double kept_share = 0;
-  /// #V, 1 for vertices that move along keyframes: others give way to them. Empty: none.
+  /// #V, 1 for kinematic vertices: others give way to them. Empty: none.
   std::vector<std::uint8_t> prescribed;
-  /// #V, vertices of the same number ≥ 0 are shortened together, −1: alone. Empty: all alone. For what must
-  /// keep its shape.
+  /// #V, vertices of the same number ≥ 0 are shortened together, −1: alone. Empty: all alone. For rigid
+  /// bodies.
   std::vector<int> groups;
 };
 
 struct LimitReport {
   std::size_t deflected = 0;   ///< vertices that lost normal approach
-  std::size_t clipped = 0;     ///< vertices stopped at the boxes: if any, find the candidates anew soon
+  std::size_t clipped = 0;     ///< vertices stopped at the boxes: if any, update the candidates soon
   std::size_t shortened = 0;   ///< vertices shortened by conservative advancement
   std::size_t rounds = 0;      ///< of conservative advancement
-  double smallest_factor = 1;  ///< by which a vertex was shortened
+  double smallest_factor = 1;  ///< of a vertex
 };
 
 class StepLimiter {
@@ -48,11 +49,11 @@ class StepLimiter {
   /// Errors: usage, if sizes do not fit or the floor is not positive.
   StepLimiter(std::shared_ptr<const SurfaceMap> map, StepLimits limits);
 
-  /// Changes the step `dq` (#V by 3, [m]) from q such that no pair of the candidates comes closer than its
-  /// thickness + gap floor, or, if it is closer than that at q, any closer, all along the straight way to
-  /// q + dq. `at` are the distances at J q, which must lie in the boxes of the candidates; what is missing
-  /// there is found. Pairs at distance zero are left free. `held`, #V or none: vertices that others give way
-  /// to in this step, instead of those prescribed.
+  /// Changes the step `dq` (#V by 3, [m]) from q such that, on the whole straight path to q + dq, no
+  /// candidate pair comes closer than its thickness + gap floor, or, if it is closer than that at q, any
+  /// closer. `at` are the distances at J q, which must lie in the boxes of the candidates; missing ones are
+  /// computed. Pairs at distance zero are ignored. `held`, #V or none: vertices that others give way to in
+  /// this step, instead of those prescribed.
   LimitReport limit(PairDistances& at, Vectors dq, std::span<const std::uint8_t> held = {}) const;
 
  private:

@@ -1,7 +1,7 @@
-// Points of surfaces as linear maps of the degrees of freedom, x = J q: the vertices of a shell (J = 1), the
-// skin of a lattice (trilinear weights), points of an affine body (weights of its four control points), the
-// centre of a ball, a collider's vertices that are moved along keyframes. Contact is written for x and comes
-// back to q by Jᵀ.
+// SurfaceMap maps the degrees of freedom linearly to surface points, x = J q: the vertices of a shell (J =
+// 1), the skin of a lattice (trilinear weights), points of an affine body (weights of its four control
+// points), the centre of a ball, a collider's vertices moved along keyframes. Contact is formulated in x; Jᵀ
+// maps its forces to q.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace muslin {
 
 /// J, sparse, by rows; immutable. Each point is an affine combination of vertices: weights sum to 1, so that
-/// a translation of all vertices is one of all points.
+/// a translation of all vertices translates all points alike.
 class SurfaceMap {
  public:
   struct Entry {
@@ -21,7 +21,7 @@ class SurfaceMap {
     double weight = 1;  ///< of that vertex in the point
   };
 
-  /// Points are the vertices.
+  /// Returns the map whose points are the vertices.
   static SurfaceMap identity(std::size_t vertex_count);
   /// The entries of point p are entries[offsets[p]] … entries[offsets[p + 1] − 1], offsets #P + 1, each
   /// vertex once in a row. Errors: usage, if the offsets do not ascend, a vertex does not exist or the
@@ -31,10 +31,10 @@ class SurfaceMap {
   std::size_t vertex_count() const { return vertex_count_; }
   std::size_t point_count() const { return offsets_.size() - 1; }
   bool is_identity() const { return identity_; }
-  /// Whether no weight is negative: points lie between their vertices.
+  /// True if no weight is negative: points lie between their vertices.
   bool is_convex() const { return convex_; }
   std::span<const Entry> row(std::size_t point) const { return slice(entries_, offsets_, point); }
-  /// The points that vertex v moves, as (point, weight).
+  /// Returns the points that depend on vertex v, as (point, weight).
   std::span<const Entry> column(std::size_t v) const { return slice(columns_, column_offsets_, v); }
 
   /// x = J q: q #V by 3, x #P by 3.

@@ -8,9 +8,9 @@
 namespace muslin {
 namespace {
 
-/// Whether x + s u keeps the distance for all s in [0, t]: with N(s) = (b − a) × (c − a), quadratic in s, and
-/// D(s) = N·(x − a), cubic, d = D/|N|. A polynomial lies within the hull of its Bernstein coefficients, so
-/// d ≥ min Dₖ / max |Nₖ| wherever min Dₖ ≥ 0.
+/// Returns true if x + s u keeps the distance for all s in [0, t]: with N(s) = (b − a) × (c − a), quadratic
+/// in s, and D(s) = N·(x − a), cubic, d = D/|N|. A polynomial lies within the hull of its Bernstein
+/// coefficients, so d ≥ min Dₖ / max |Nₖ| wherever min Dₖ ≥ 0.
 bool keeps(std::span<const Vec3, 4> x, std::span<const Vec3, 4> u, double t, double required) {
   const auto apart = [&](std::size_t i, double s) { return Vec3(x[i] - x[1] + s * (u[i] - u[1])); };
   const Vec3 b0 = apart(2, 0), b1 = apart(2, t), c0 = apart(3, 0), c1 = apart(3, t);

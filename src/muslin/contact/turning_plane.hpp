@@ -1,11 +1,10 @@
-// A point over a plane that turns: the plane goes through three points.
+// Computes the distance of a point from a turning plane, which passes through three points.
 //
 // With x the point and a, b, c those of the plane, n = (b − a) × (c − a) / |…|,
 //
 //   d = n·(x − a),   ∂d/∂xᵢ = wᵢ n,   w = (1, −(1 − s − t), −s, −t),
 //
-// s and t being those of the foot of x in the plane, a + s (b − a) + t (c − a): as of a triangle, but without
-// an end.
+// s and t being those of the foot of x in the plane, a + s (b − a) + t (c − a): as for an unbounded triangle.
 #pragma once
 
 #include <array>
@@ -20,12 +19,12 @@ struct OverPlane {
   double distance = 0;         ///< [m], negative below
   std::array<double, 4> weights{};
 };
-/// Of x[0] over the plane through x[1], x[2], x[3] (#4 by 3, [m]).
+/// Returns the distance of x[0] from the plane through x[1], x[2], x[3] (#4 by 3, [m]).
 OverPlane over_plane(std::span<const Vec3, 4> x);
 
-/// A t in [0, 1] such that the distance at x + s u (#4 by 3, [m]) is at least `required` [m] for all s in
-/// [0, t]; it is positive if the distance at s = 0 is above that. Of the largest such t it is a dyadic
-/// fraction below, or 1.
+/// Returns a t in [0, 1] such that the distance at x + s u (#4 by 3, [m]) is at least `required` [m] for all
+/// s in [0, t]; it is positive if the distance at s = 0 is above that. It is 1 or a dyadic fraction below the
+/// largest such t.
 double safe_fraction_over_plane(std::span<const Vec3, 4> x, std::span<const Vec3, 4> u, double required);
 
 }  // namespace muslin

@@ -1,4 +1,4 @@
-// The arc tangent of a quotient as straight-line code, which loops over it become vector code by.
+// Computes the arc tangent of a quotient in straight-line code, so that loops over it vectorise.
 #pragma once
 
 #include <numbers>

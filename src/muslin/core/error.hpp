@@ -1,5 +1,5 @@
-// What goes wrong because of input, files or numbers, told so that the reader can mend it.
-// Bugs of our own are asserts, not Errors.
+// Error reports failures due to input, files or numbers, with a remedy for the user. Bugs of our own are
+// asserts, not Errors.
 #pragma once
 
 #include <stdexcept>
@@ -11,19 +11,19 @@ namespace muslin {
 enum class ErrorKind {
   usage = 2,          ///< the command line or an API call is wrong
   input = 3,          ///< a scene or mesh is wrong
-  solver = 4,         ///< the solver could not go on
+  solver = 4,         ///< the solver failed
   file = 5,           ///< a file cannot be read or written (missing, permissions, disk full)
   interrupted = 130,  ///< stopped by the user; the run can be resumed
 };
 
-/// Where in a file; line and column count from 1, 0 means unknown.
+/// A position in a file; line and column count from 1, 0 means unknown.
 struct Place {
   std::string file;
   int line = 0;
   int column = 0;
 };
 
-/// what() reads `FILE:LINE:COLUMN: problem; remedy`, leaving out what is unknown.
+/// what() reads `FILE:LINE:COLUMN: problem; remedy`, without unknown parts.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, Place place, std::string problem, std::string remedy);

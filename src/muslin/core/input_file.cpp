@@ -28,7 +28,7 @@ std::string read_file(const std::filesystem::path& path, std::uint64_t most_byte
   const auto refuse = [&path](const std::string& problem, const std::string& remedy) -> Error {
     return {ErrorKind::file, {path.string()}, problem, remedy};
   };
-  // Not blocking, or opening a pipe that nobody writes to would wait for ever.
+  // Non-blocking, since opening a pipe without a writer would wait forever.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.number < 0) throw system_error(path, "read", errno);
   struct stat status {};
@@ -50,7 +50,7 @@ std::string read_file(const std::filesystem::path& path, std::uint64_t most_byte
     const ssize_t count = ::read(file.number, bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw system_error(path, "read", errno);
-    if (count == 0) break;  // cut while we read it
+    if (count == 0) break;  // truncated during reading
     done += static_cast<std::size_t>(count);
   }
   bytes.resize(done);

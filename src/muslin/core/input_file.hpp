@@ -1,4 +1,4 @@
-// Reading whole files.
+// Reads whole files.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace muslin {
 
-/// All bytes of a regular file of at most `most_bytes`. Never waits for a pipe nor reads a device.
-/// Errors: file, with what the system says.
+/// Returns all bytes of a regular file of at most `most_bytes`. Never waits for a pipe nor reads a device.
+/// Errors: file, with the system's message.
 std::string read_file(const std::filesystem::path& path,
                       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 

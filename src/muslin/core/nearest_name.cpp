@@ -6,7 +6,7 @@
 namespace muslin {
 namespace {
 
-// Longer names are compared by their beginnings: enough for advice, and no cost for absurd input.
+// Longer names are compared by their beginnings: enough for advice, and cheap for absurdly long input.
 constexpr std::size_t compared_letters = 64;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }

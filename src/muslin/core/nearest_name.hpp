@@ -1,4 +1,4 @@
-// Which of the known names a misspelt one was meant to be.
+// Finds the known name that a misspelt one most likely means.
 #pragma once
 
 #include <optional>
@@ -8,16 +8,16 @@
 
 namespace muslin {
 
-/// Number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`, upper and
-/// lower case taken as equal (optimal string alignment).
+/// Returns the number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`,
+/// upper and lower case taken as equal (optimal string alignment).
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The name with the smallest edit distance, the first of equals; nothing if `names` is empty or if even the
-/// best differs in more than half of its letters.
+/// Returns the name with the smallest edit distance, the first of equals; nothing if `names` is empty or if
+/// even the best differs in more than half of its letters.
 std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& names);
 
-/// What to tell a user who wrote `name` where one of `names` is needed: "did you mean `x`?", or, where none
-/// is near, "use one of `a`, `b`, `c`".
+/// Returns advice for a user who wrote `name` where one of `names` is needed: "did you mean `x`?", or, if
+/// none is near, "use one of `a`, `b`, `c`".
 std::string name_advice(std::string_view name, const std::vector<std::string>& names);
 
 /// "`a`, `b`, `c`"

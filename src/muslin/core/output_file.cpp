@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
   throw system_error(path, action, code);
 }
 
-/// Where a file of this name lies, links followed.
+/// Returns the path of the file after following links.
 fs::path target_of(const fs::path& path) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
@@ -31,12 +31,12 @@ fs::path target_of(const fs::path& path) {
   return code ? path : target;
 }
 
-/// Renames are on the disk only once the directory is.
+/// Renames are durable only once the directory is synced.
 void sync_directory(const fs::path& directory) {
   const int descriptor =
       ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) fail(directory, "open the directory", errno);
-  // Some file systems cannot sync a directory and say EINVAL; their renames are durable by other means.
+  // Some file systems cannot sync a directory and return EINVAL; their renames are durable by other means.
   if (::fsync(descriptor) != 0 && errno != EINVAL) {
     const int code = errno;
     ::close(descriptor);
@@ -87,7 +87,7 @@ void OutputFile::append(const void* data, std::size_t bytes) {
   try {
     write_all(size_, data, bytes);
   } catch (const Error&) {
-    // What was written of it would be half a record to every reader.
+    // Removes the partly written record.
     [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(size_));
     throw;
   }

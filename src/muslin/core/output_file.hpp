@@ -1,4 +1,4 @@
-// Writing files so that nothing fails unnoticed: every result is checked, that of closing included.
+// Writes files and checks every result, that of closing included.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ class OutputFile {
 };
 
 /// A file that appears under its name only when it is complete: it is written as NAME.part beside it and
-/// renamed. A link is followed; what is not a regular file is refused. Errors: file.
+/// renamed. A link is followed; other than regular files are refused. Errors: file.
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path path);

@@ -1,5 +1,5 @@
-// Parallel loops that give the same bits for any thread count: work is cut into blocks whose size depends
-// on the problem alone, and partial sums are added in the order of the blocks.
+// Provides parallel loops that give the same bits for any thread count: work is cut into blocks whose size
+// depends on the problem alone, and partial sums are added in the order of the blocks.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
                     [&](std::size_t block) { body(block * grain, std::min(count, (block + 1) * grain)); });
 }
 
-/// The sum of body(begin, end) over the blocks of parallel_for, added in order.
+/// Returns the sum of body(begin, end) over the blocks of parallel_for, added in order.
 template <class Value, class Body>
 Value parallel_sum(std::size_t count, std::size_t grain, Value zero, const Body& body) {
   if (count <= grain) return count > 0 ? Value(zero + body(std::size_t{0}, count)) : zero;

@@ -1,4 +1,4 @@
-// How long work tells how far it is and learns that it should stop.
+// Progress lets long work report its progress and be cancelled.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,8 @@
 
 namespace muslin {
 
-/// Both callbacks may be empty. Long work calls `report` with the finished fraction (0…1) and what it is
-/// doing, and polls `cancelled`; when that returns true it throws Error(ErrorKind::interrupted).
+/// Both callbacks may be empty. Long work calls `report` with the finished fraction (0…1) and its stage, and
+/// polls `cancelled`; when that returns true it throws Error(ErrorKind::interrupted).
 struct Progress {
   std::function<void(double fraction, std::string_view stage)> report;
   std::function<bool()> cancelled;

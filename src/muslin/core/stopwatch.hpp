@@ -1,11 +1,11 @@
-// How long parts of a computation take.
+// Stopwatch measures the time of parts of a computation.
 #pragma once
 
 #include <chrono>
 
 namespace muslin {
 
-/// Adds the time of its life [s] to a sum.
+/// Adds its lifetime [s] to a sum.
 class Stopwatch {
  public:
   explicit Stopwatch(double& sum) : sum_(sum) {}

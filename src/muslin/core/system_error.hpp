@@ -1,4 +1,4 @@
-// What the operating system says of a file, as an Error.
+// Makes an Error from an operating-system error on a file.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// Error(file) "PATH: cannot ACTION: REASON; remedy" for an errno.
+/// Returns Error(file) "PATH: cannot ACTION: REASON; remedy" for an errno.
 Error system_error(const std::filesystem::path& path, const std::string& action, int code);
 
 }  // namespace muslin

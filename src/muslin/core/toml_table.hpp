@@ -1,4 +1,4 @@
-// Checked reading of a TOML table: every getter names the key, its place, what is wrong and the unit.
+// TomlTable reads a TOML table with checks; errors name the key, its place, the problem and the unit.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace muslin {
 
-/// What a number may be. Infinite and NaN never are allowed, whatever the bounds.
+/// Range of valid numbers. Infinity and NaN are never allowed, whatever the bounds.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -25,23 +25,23 @@ struct Range {
   static Range between(double min, double max) { return {min, max, false}; }
 };
 
-/// Numbers of single values; `name` is how messages call them and `unit` may be empty. Errors: input.
+/// Return a value as numbers; `name` is its name in messages and `unit` may be empty. Errors: input.
 double to_number(const TomlValue& value, const std::string& name, std::string_view unit,
                  const Range& range = {});
-/// Of points, velocities, directions: what is larger cannot be squared and summed without harm.
+/// Largest component of points, velocities, directions; larger ones cannot be squared and summed safely.
 inline constexpr double largest_component = 1e11;
 Vec3 to_vector(const TomlValue& value, const std::string& name, std::string_view unit,
                const Range& range = Range::between(-largest_component, largest_component));
 
 class TomlTable {
  public:
-  /// `title` is how messages call the table, such as "[time]". Keys other than `known` are errors that name
+  /// `title` is the table's name in messages, such as "[time]". Keys other than `known` are errors that name
   /// the nearest known one. `value` must outlive the table. Errors: input.
   TomlTable(const TomlValue& value, std::string title, const std::vector<std::string>& known);
 
   bool has(std::string_view key) const { return find(key) != nullptr; }
   const TomlValue* find(std::string_view key) const { return value_->find(key); }
-  /// Of the key's value; of the table if the key is missing.
+  /// Returns the place of the key's value; of the table if the key is missing.
   const Place& place(std::string_view key) const;
   const Place& place() const { return value_->place; }
   const std::string& title() const { return title_; }
@@ -56,14 +56,14 @@ class TomlTable {
   Vec3 vector(std::string_view key, std::string_view unit, const Vec3& fallback) const;
   std::string string(std::string_view key) const;
   std::string string(std::string_view key, const std::string& fallback) const;
-  /// The index of the string among `names`.
+  /// Returns the index of the string among `names`.
   std::size_t choice(std::string_view key, const std::vector<std::string>& names, std::size_t fallback) const;
-  /// A table below this one; nothing if the key is missing.
+  /// Returns a table below this one; nothing if the key is missing.
   std::optional<TomlTable> table(std::string_view key, const std::vector<std::string>& known) const;
-  /// The items of an array; nothing if the key is missing.
+  /// Returns the items of an array; null if the key is missing.
   const std::vector<TomlValue>* array(std::string_view key, std::string_view what) const;
 
-  /// An error about the key, at its place.
+  /// Returns an error about the key, at its place.
   Error error(std::string_view key, std::string problem, std::string remedy) const;
 
  private:

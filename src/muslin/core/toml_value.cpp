@@ -15,7 +15,7 @@ constexpr int most_key_parts = 16;
 constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20;
 
 /// toml++ recurses once per part of a dotted key and has no bound on them: a long enough key overflows the
-/// stack. Counted here, before it sees the text; strings and comments do not count.
+/// stack. Counted here before parsing; strings and comments do not count.
 void require_shallow_keys(std::string_view text, const std::string& file) {
   int parts = 1, line = 1;
   for (std::size_t i = 0; i < text.size(); ++i) {

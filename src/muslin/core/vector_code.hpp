@@ -1,4 +1,4 @@
-// Vector code: plain loops compiled once for each instruction set, the best chosen at run time.
+// Vector code consists of plain loops compiled once for each instruction set; the best is chosen at run time.
 #pragma once
 
 /// Before a function: clones of it for AVX-512, AVX2 and any other processor. They give the same bits, since

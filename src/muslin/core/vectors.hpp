@@ -1,4 +1,4 @@
-// The vector types every part shares. Lengths are metres, y is up, unless a comment says otherwise.
+// Defines the vector types shared by all parts. Lengths are metres, y is up, unless a comment says otherwise.
 #pragma once
 
 #include <span>

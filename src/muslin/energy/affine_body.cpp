@@ -16,7 +16,7 @@ namespace {
 
 int sign(std::size_t corner, int axis) { return corner_signs[corner][static_cast<std::size_t>(axis)]; }
 
-/// The half axes, as columns.
+/// Returns the half axes as columns.
 Mat3 half_axes(ConstVectors q) {
   assert(q.size() == 4);
   Mat3 b = Mat3::Zero();
@@ -25,7 +25,7 @@ Mat3 half_axes(ConstVectors q) {
   return b;
 }
 
-/// Adds what is felt by the half axes to the corners.
+/// Adds the forces on the half axes to the corners.
 void spread(const Mat3& to_axes, Vectors corners) {
   for (std::size_t c = 0; c < 4; ++c)
     for (int i = 0; i < 3; ++i) corners[c] += sign(c, i) * to_axes.col(i) / 4;

@@ -1,16 +1,17 @@
-// What keeps a rigid body rigid: four points q that move it affinely (geometry/affine_frame.hpp) are held to
-// rigid motions by a stiff energy, as in Lan, Kaufman, Li, Jiang, Yang, Affine Body Dynamics (2022).
+// AffineBodyEnergy keeps a rigid body rigid: the four points q that move it affinely
+// (geometry/affine_frame.hpp) are held to rigid motions by a stiff energy, as in Lan, Kaufman, Li, Jiang,
+// Yang, Affine Body Dynamics (2022).
 //
 //   bᵢ = ¼ Σ_c s_ci q_c,   the half axes of the tetrahedron, s the signs of its corners; at rest |bᵢ| = aᵢ
 //   r_ij = (bᵢ·b_j − δ_ij aᵢ²) / max(aᵢ, a_j)
 //   W = k/8 Σ_ij r_ij²
 //
-// With kinetic energy ½ m (|ċ|² + Σ |ḃᵢ|²) every small distortion swings at ω² = k/m, whatever the shape: a
-// plate is no harder to solve than a ball. A force F at a point X of the body distorts it by about
-// F |X/a|²/k, 3 to 5 F/k on the surface of common shapes.
+// With kinetic energy ½ m (|ċ|² + Σ |ḃᵢ|²) every small distortion oscillates at ω² = k/m, whatever the shape:
+// a plate is no harder to solve than a ball. A force F at a point X of the body distorts it by about F
+// |X/a|²/k, 3 to 5 F/k on the surface of common shapes.
 //
-// The projected stiffness leaves out what is negative: of the second part, k/2 Σ_ij r_ij/max(aᵢ, a_j)
-// dbᵢ·db_j, whose 3 × 3 matrix is cut at zero.
+// The projected stiffness leaves out negative eigenvalues: those of the second part, k/2 Σ_ij r_ij/max(aᵢ,
+// a_j) dbᵢ·db_j, whose 3 × 3 matrix is cut at zero.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ namespace muslin {
 
 class AffineBodyEnergy : public Potential {
  public:
-  /// Of four vertices; `radii` as of AffineFrame [m], `stiffness` k [N/m]. Errors: usage, if any is not
+  /// For four vertices; `radii` as in AffineFrame [m], `stiffness` k [N/m]. Errors: usage, if any is not
   /// positive.
   AffineBodyEnergy(const Vec3& radii, double stiffness);
 
@@ -34,7 +35,7 @@ class AffineBodyEnergy : public Potential {
 
  private:
   Mat3 strain(const Mat3& b) const;  ///< r
-  /// The projected stiffness between bᵢ and b_j at b.
+  /// Returns the projected stiffness between bᵢ and b_j at b.
   std::array<std::array<Mat3, 3>, 3> projected(const Mat3& b) const;
 
   Vec3 radii_;

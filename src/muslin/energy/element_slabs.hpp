@@ -1,8 +1,8 @@
-// How the elements of a mesh (triangles, hinges) are walked in parallel, in batches for vector code, with
-// the same bits for any thread count.
+// ElementSlabs loops over the elements of a mesh (triangles, hinges) in parallel, in batches for vector code,
+// with the same bits for any thread count.
 //
 // Vertices are cut into slabs of consecutive indices. A slab's task writes to its own vertices only: an
-// element between slabs is computed by each of them and owned by that of its smallest vertex. All sizes
+// element between slabs is computed by each of them and owned by the slab of its smallest vertex. All sizes
 // depend on the mesh alone.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace muslin {
 
-/// Elements computed side by side: the doubles of the widest vector registers.
+/// Elements computed at once: the doubles of the widest vector registers.
 inline constexpr int element_lanes = 8;
 
 /// Vectors of a batch by corner, axis and lane.
@@ -35,7 +35,7 @@ class ElementSlabs {
   /// `vertex_count` is that of the body; elements index its vertices.
   ElementSlabs(const std::vector<std::array<int, N>>& elements, std::size_t vertex_count) {
     const int count = static_cast<int>(vertex_count);
-    // Of equal size. Smaller ones would have more elements between them.
+    // Slabs of equal size. Smaller ones would have more elements between them.
     const int slabs = std::max({1, std::min(8, count / 640), count / 4096});
     const int size = std::max(1, (count + slabs - 1) / slabs);
     std::vector<std::vector<int>> owned(static_cast<std::size_t>(slabs)), borrowed = owned;
@@ -77,8 +77,8 @@ class ElementSlabs {
     });
   }
 
-  /// The same, and the sum of what batch(first, count, owned, slab) returns: of the first `owned` entries
-  /// only, so that each element counts once.
+  /// The same; returns the sum of batch(first, count, owned, slab), which must be that of the first `owned`
+  /// entries only, so that each element counts once.
   template <class Body>
   double sum_of_batches(const Body& batch) const {
     return parallel_sum(slabs_.size(), 1, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -93,7 +93,7 @@ class ElementSlabs {
     });
   }
 
-  /// The combination by + of term(first, count) over all elements, each taken once.
+  /// Returns the combination by + of term(first, count) over all elements, each taken once.
   template <class Value, class Term>
   Value sum(Value zero, const Term& term) const {
     return parallel_sum(slabs_.size(), 1, zero, [&](std::size_t begin, std::size_t end) {
@@ -106,7 +106,7 @@ class ElementSlabs {
     });
   }
 
-  /// x at the corners of entries first … first + count − 1; further lanes repeat the last.
+  /// Loads x at the corners of entries first … first + count − 1; further lanes repeat the last.
   void gather(int first, int count, ConstVectors x, Batch<N>& out) const {
     for (int l = 0; l < element_lanes; ++l) {
       const auto& vertices = vertices_[static_cast<std::size_t>(first + std::min(l, count - 1))];
@@ -117,7 +117,7 @@ class ElementSlabs {
     }
   }
 
-  /// By entry: a bit for each corner that lies in the slab.
+  /// Sets, by entry, a bit for each corner that lies in the slab.
   void corners_in(int first, int count, const Slab& slab, unsigned* bits) const {
     for (int l = 0; l < count; ++l) {
       bits[l] = 0;
@@ -140,8 +140,8 @@ class ElementSlabs {
     }
   }
 
-  /// By entry: the blocks of the pairs of corners i ≤ j, (0,0), (0,1), …, (1,1), …; ~block where that of i
-  /// is the later vertex, so that the block is of row j and column i.
+  /// Returns by entry the blocks of the pairs of corners i ≤ j, (0,0), (0,1), …, (1,1), …; ~block where i is
+  /// the later vertex, so that the block is of row j and column i.
   static constexpr int pair_count = N * (N + 1) / 2;
   using Slots = std::array<int, pair_count>;
   std::vector<Slots> slots(const SymmetricPattern& pattern) const {
@@ -158,7 +158,7 @@ class ElementSlabs {
     return slots;
   }
 
-  /// `values` by element as an array by entry, long enough to read whole batches.
+  /// Converts values by element to an array by entry, long enough to read whole batches.
   template <class Value, class Get>
   std::vector<Value> by_entry(const Get& value_of_element) const {
     std::vector<Value> values;

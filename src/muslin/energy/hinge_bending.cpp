@@ -30,7 +30,7 @@ MUSLIN_INLINE double dot(const Vector& p, const Vector& q, int l) {
   return p[0][l] * q[0][l] + p[1][l] * q[1][l] + p[2][l] * q[2][l];
 }
 
-/// A hinge and the gradient of its angle: −u on the wings, and on the edge's ends what balances them.
+/// A hinge and the gradient of its angle: −u on the wings, balanced by that on the edge's ends.
 struct Bent {
   Vector e, f, g;                          // edge and wings from vertex 0
   Vector n1, n2;                           // twice the triangles' areas along their normals
@@ -48,7 +48,7 @@ MUSLIN_INLINE void bend(const Batch<4>& x, Bent& h) {
   cross(h.n1, h.n2, across);
   for (int l = 0; l < lanes; ++l) {
     h.e2[l] = dot(h.e, h.e, l);
-    // Sines of the wings' angles below 1e-10 are nothing but rounding.
+    // Sines of the wings' angles below 1e-10 are rounding error.
     const double n1 = dot(h.n1, h.n1, l), n2 = dot(h.n2, h.n2, l);
     const double f2 = dot(h.f, h.f, l), g2 = dot(h.g, h.g, l);
     h.q1[l] = n1 > 1e-20 * h.e2[l] * f2 ? 1 / n1 : 0;
@@ -60,7 +60,7 @@ MUSLIN_INLINE void bend(const Batch<4>& x, Bent& h) {
 
 struct Gradient {
   Vector u1, u2;
-  double length[lanes], t1[lanes], t2[lanes];  // of the edge; where along it the wings' feet are
+  double length[lanes], t1[lanes], t2[lanes];  // of the edge; positions of the wings' feet along it
 };
 
 MUSLIN_INLINE void gradient_of_angle(const Bent& h, Gradient& d) {
@@ -89,7 +89,7 @@ MUSLIN_INLINE void to_corners(const Gradient& d, Batch<4>& g) {
   }
 }
 
-/// θ − θ₀ within −π … π.
+/// Returns θ − θ₀ within −π … π.
 MUSLIN_INLINE void deviations(const Bent& h, const double* rest, double* out) {
   for (int l = 0; l < lanes; ++l) {
     const double difference = arc_tangent(h.sine[l], h.cosine[l]) - rest[l];
@@ -105,7 +105,7 @@ MUSLIN_VECTOR_CODE void energies(const double* stiffness, const double* rest, co
   for (int l = 0; l < lanes; ++l) w[l] = 0.5 * stiffness[l] * deviation[l] * deviation[l];
 }
 
-/// Forces on the corners, and W.
+/// Computes the forces on the corners, and W.
 MUSLIN_VECTOR_CODE void gradients(const double* stiffness, const double* rest, const Batch<4>& x,
                                   Batch<4>& force, double* w) {
   Bent h;
@@ -132,8 +132,8 @@ MUSLIN_VECTOR_CODE void angle_gradients(const Batch<4>& x, Batch<4>& g) {
   to_corners(d, g);
 }
 
-/// What the gradient of θ changes by as the corners move by p: the derivatives, one by one, of what
-/// gradient_of_angle computes.
+/// Computes the change of the gradient of θ when the corners move by p, by differentiating gradient_of_angle
+/// term by term.
 MUSLIN_INLINE void change_of_gradient(const Bent& h, const Gradient& d, const Batch<4>& p, Batch<4>& change) {
   Vector de, df, dg, part, dn1, dn2;
   subtract(p[1], p[0], de);
@@ -204,7 +204,7 @@ double rigidity(const BendingModuli& m, double warp_share) {
          (4 * m.bias - m.warp - m.weft) * warp_share * weft_share;
 }
 
-/// blocks += scale k g gᵀ of each lane, those whose rows are of corners that `rows` has a bit for.
+/// blocks += scale k g gᵀ of each lane, for rows of corners with a bit in `rows`.
 MUSLIN_VECTOR_CODE void add_squares(const Batch<4>& g, const double* stiffness, double scale, int count,
                                     const unsigned* rows, const ElementSlabs<4>::Slots* slots,
                                     Float4* blocks) {

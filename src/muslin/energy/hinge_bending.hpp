@@ -1,16 +1,16 @@
-// Bending of a shell: a hinge at every inner edge.
+// HingeBending is the bending energy of a shell, with a hinge at every inner edge.
 //
 //   W = Σ ½ k w(θ − θ₀)²,   k = D l² / (A₁ + A₂)   [N·m]
 //
 // l the edge and A₁, A₂ the triangles at rest, θ the angle between the normals, θ₀ that at rest, w the same
 // angle within −π … π. On a regular mesh this is the bending energy ½ D κ² per area of a sheet that curves
 // across the edge (Grinspun, Hirani, Desbrun, Schröder 2003, with the constant that makes D the rigidity).
-// D depends on the direction that bends, at the angle φ from warp, as an orthotropic plate's does:
+// D depends on the direction of bending, at the angle φ from warp, as for an orthotropic plate:
 //
 //   D = D_warp cos⁴φ + D_weft sin⁴φ + (4 D_bias − D_warp − D_weft) cos²φ sin²φ,
 //
-// which is D_bias at 45°. Gradient: θ's, as in docs/theory/shells.md. The projected stiffness is k ∇θ∇θᵀ.
-// A triangle without area has no direction to bend in: it pulls nowhere.
+// which is D_bias at 45°. For the gradient of θ see docs/theory/shells.md. The projected stiffness is k
+// ∇θ∇θᵀ. A triangle without area has no bending direction and exerts no force.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ struct BendingModuli {
   double bias = 0;  ///< at 45° between them [N·m]; at least lowest_bias
 };
 
-/// The least rigidity at 45° for which none between is negative: (√warp − √weft)²/4.
+/// Returns the least rigidity at 45° for which no direction between has a negative one: (√warp − √weft)²/4.
 double lowest_bias(double warp, double weft);
 
 class HingeBending : public ShellEnergy {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int lanes = element_lanes;
 
-/// Triangles that buckle may take this share of the masses; none where they are stiffer beside the masses than
-/// this, because float would round away what is left of these.
+/// Share of the masses that buckling triangles may use, and the ratio of stiffness to mass above which they
+/// use none, because float would round away the rest of the masses.
 constexpr double held_share = 0.9, most_stiff = 3e4;
 
 using Rest = TriangleRest;
@@ -60,7 +60,7 @@ MUSLIN_VECTOR_CODE void energies(const MembraneEnergy::Constants& c, const Rest&
   energies_of(c, rest, a, b, w);
 }
 
-/// Forces on the corners, and W.
+/// Computes the forces on the corners, and W.
 MUSLIN_VECTOR_CODE void gradients(const MembraneEnergy::Constants& c, const Rest& rest, const Batch<3>& x,
                                   Batch<3>& g, double* w) {
   Strained s;
@@ -69,8 +69,8 @@ MUSLIN_VECTOR_CODE void gradients(const MembraneEnergy::Constants& c, const Rest
   stress_to_corners(rest, s, g);
 }
 
-/// The positive semidefinite part of the stress: with eigenvalues m ± r its deviator is scaled and its mean
-/// moved so that they become max(m ± r, 0).
+/// Computes the positive semidefinite part of the stress: with eigenvalues m ± r its deviator is scaled and
+/// its mean moved so that they become max(m ± r, 0).
 MUSLIN_INLINE void project(double* suu, double* svv, double* suv) {
   for (int l = 0; l < lanes; ++l) {
     const double mean = 0.5 * (suu[l] + svv[l]), half = 0.5 * (suu[l] - svv[l]), shear = suv[l];
@@ -98,7 +98,7 @@ MUSLIN_VECTOR_CODE void products(const MembraneEnergy::Constants& c, Stiffness k
   stiffness_product(Moduli{c}, rest, s, p, y);
 }
 
-/// Everything that the 3 by 3 blocks of a triangle's stiffness are made of.
+/// Data from which the 3 by 3 blocks of a triangle's stiffness are computed.
 MUSLIN_VECTOR_CODE void strained_of_kind(const MembraneEnergy::Constants& c, Stiffness kind, const Rest& rest,
                                          const Batch<3>& x, Strained& s) {
   strain(c, rest, x, s);

@@ -1,8 +1,9 @@
-// Stretch and shear of a shell: the orthotropic St. Venant-Kirchhoff membrane on linear triangles.
+// MembraneEnergy resists stretch and shear of a shell: an orthotropic St. Venant-Kirchhoff membrane on linear
+// triangles.
 //
 //   W = Σ ½ A (C₁₁ E_uu² + 2 C₁₂ E_uu E_vv + C₂₂ E_vv² + G (2 E_uv)²),   E = ½ (FᵀF − I),
 //
-// F = [a, b] the 3 by 2 deformation gradient: a and b are what became of a unit length of warp and weft. With
+// F = [a, b] the 3 by 2 deformation gradient: a and b are the deformed unit vectors of warp and weft. With
 // the plane-stress constants C₁₁ = K_u/(1−ν²), C₂₂ = K_v/(1−ν²), C₁₂ = ν √(K_u K_v)/(1−ν²) a strip pulled
 // along warp or weft, free to narrow, has the stiffness K_u or K_v. With S = (S_uu, S_vv, S_uv) the second
 // Piola-Kirchhoff stress [N/m],

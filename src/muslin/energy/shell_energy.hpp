@@ -1,4 +1,5 @@
-// The interface of the energies of a shell, with four kinds of stiffness, and damping made from one of them.
+// Declares the interface of the energies of a shell, with four kinds of stiffness, and damping made from one
+// of them.
 #pragma once
 
 #include <memory>
@@ -11,11 +12,11 @@
 
 namespace muslin {
 
-/// Which part of ∂²W/∂x² is meant. With W = ½ k s(x)², s a strain or an angle, it is k ∇s∇sᵀ + k s ∇²s.
+/// Selects a part of ∂²W/∂x². With W = ½ k s(x)², s a strain or an angle, it is k ∇s∇sᵀ + k s ∇²s.
 enum class Stiffness {
-  material,   ///< the first term alone: what resists a change of strain; positive semidefinite
-  projected,  ///< and of the second what pulls but not what buckles; positive semidefinite
-  bounded,    ///< as projected, and of membranes as much of what buckles as the masses hold; matrices only
+  material,   ///< the first term alone: resists changes of strain; positive semidefinite
+  projected,  ///< and the tensile part of the second, without buckling; positive semidefinite
+  bounded,    ///< as projected, and for membranes as much buckling as the masses allow; matrices only
   exact,      ///< both
 };
 
@@ -40,10 +41,10 @@ class ShellEnergy : public Potential {
   }
   /// Adds `scale` K to the blocks of a matrix of pattern(); `kind` is not exact. With `bounded`, M + scale K
   /// is at least a tenth of M, the diagonal of `masses` (#V, read only then), in every direction; of the
-  /// energies of a shell only the membrane takes of the masses.
+  /// energies of a shell only the membrane uses the masses.
   virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
                                     SymmetricMatrix& matrix) const = 0;
-  /// Of the shell, if one was given; without, the inner solver computes products from x.
+  /// Returns the shell's pattern, if given; without it the inner solver computes products from x.
   const std::shared_ptr<const SymmetricPattern>& pattern() const { return pattern_; }
 
   void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
@@ -77,14 +78,14 @@ class ShellEnergy : public Potential {
   Projected projected_;
 };
 
-/// The couplings of a shell: of vertices in a triangle or a hinge.
+/// Returns the couplings of a shell: of vertices in a triangle or a hinge.
 std::shared_ptr<const SymmetricPattern> block_pattern(const Shell& shell);
 
 /// Dashpots beside the elastic forces, Rayleigh's stiffness-proportional damping: the force −β K v with K
 /// the material stiffness at the positions predicted for the time the step's velocity belongs to
-/// (StepContext::velocity_time) and v = (x − anchor) / dt. K does not resist rigid motions, so that falling
-/// freely is not damped at all, turning only by the prediction's error, and W = β (x − anchor)ᵀ K (x −
-/// anchor) / (2 dt) is quadratic.
+/// (StepContext::velocity_time) and v = (x − anchor) / dt. K does not resist rigid motions, so that free fall
+/// is not damped, rotation only by the prediction's error, and W = β (x − anchor)ᵀ K (x − anchor) / (2 dt) is
+/// quadratic.
 class ShellDamping : public Load {
  public:
   /// beta [s] ≥ 0.

@@ -22,7 +22,7 @@ Columns arrange(const CouplingPattern& pattern, ConstVectors x, Linearization& i
   constexpr std::size_t ahead = 64;
   parallel_for(size, 8192, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // The order of the pattern jumps from row to row, which processors do not foresee.
+      // The order of the pattern jumps from row to row, which hardware prefetchers do not predict.
       const int v = vertices[i], next = vertices[std::min(i + ahead, end - 1)];
       if (next >= 0) __builtin_prefetch(x.data() + next);
       const Vec3 at = v < 0 ? Vec3(Vec3::Zero()) : x[static_cast<std::size_t>(v)];

@@ -1,4 +1,4 @@
-// Springs and dashpots as couplings of the linearised Hessian.
+// Adds springs and dashpots as couplings of the linearised Hessian.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Damping of lattice springs, proportional to their stiffness.
+// SpringDamping damps lattice springs in proportion to their stiffness.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@
 namespace muslin {
 
 /// Axial dashpots beside the springs, c = β k: the force on b is −c n nᵀ(v_b − v_a). n is the spring's
-/// direction predicted for the time the step's velocity belongs to (StepContext::velocity_time), so that
-/// falling freely is not damped at all, turning as a rigid body only by the prediction's error, and the
-/// dashpots are quadratic in x:  W = Σ β k (nᵀ(z − z_anchor))² / (2 dt).
+/// direction predicted for the time the step's velocity belongs to (StepContext::velocity_time), so that free
+/// fall is not damped, rigid rotation only by the prediction's error, and the dashpots are quadratic in x: W
+/// = Σ β k (nᵀ(z − z_anchor))² / (2 dt).
 class SpringDamping : public Load {
  public:
   /// beta [s] ≥ 0: Rayleigh's stiffness-proportional damping.

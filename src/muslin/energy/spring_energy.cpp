@@ -15,8 +15,8 @@ auto load(ConstVectors x) {
   return [x](std::size_t v, int n, const std::array<Columns, 1>& to) { load_columns(x[v].data(), n, to[0]); };
 }
 
-/// Runs of one b − a that follow one another become one, the shorter ones also across gaps: springs that are
-/// not there cost as little as those that are, ends of loops cost more.
+/// Merges consecutive runs of one b − a, the shorter ones also across gaps: a missing spring costs as little
+/// as a present one, the end of a loop more.
 constexpr int shortest_run = 512;
 constexpr int longest_gap = 8;
 

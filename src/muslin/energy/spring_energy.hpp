@@ -1,4 +1,4 @@
-// The springs of one lattice body.
+// SpringEnergy is the energy of the springs of one lattice body.
 //
 //   W(x) = Σ ½ k (|z| − r)²,  z = x_b − x_a,
 //
@@ -8,7 +8,7 @@
 //   ∂²W/∂z² = k (n nᵀ + (1 − r/|z|)(I − n nᵀ)),
 //
 // indefinite under compression. A spring shorter than 1e-12 r has no direction: it stores its energy but
-// pulls nowhere, and k I stands for its Hessian.
+// exerts no force, and k I is used as its Hessian.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ namespace muslin {
 class SpringEnergy : public Potential {
  public:
   /// `width` is the voxel width [m]; `moduli` by SpringKind [N/m²], ≥ 0; `weights` (#springs, or empty for
-  /// all 1) scales single springs, as a boundary or a partly filled voxel asks for.
+  /// all 1) scales single springs, e.g. at a boundary or a partly filled voxel.
   SpringEnergy(const Springs& springs, double width, const std::array<double, 3>& moduli,
                std::vector<float> weights = {});
 
@@ -40,17 +40,18 @@ class SpringEnergy : public Potential {
 
   void linearize(ConstVectors x, Linearization& into, std::size_t first) const override;
 
-  /// Largest |z| / r over all springs of weight above 0, 1 if there are no springs.
+  /// Returns the largest |z| / r over all springs of weight above 0, 1 if there are no springs.
   double max_stretch(ConstVectors x) const;
 
   const SpringSlabs& slabs() const { return slabs_; }
   double rest_length(int direction) const { return types_[static_cast<std::size_t>(direction)].rest; }
-  /// k of spring `index` (counted as in Springs) of this direction [N/m].
+  /// Returns k of spring `index` (counted as in Springs) of this direction [N/m].
   double stiffness(int direction, std::int64_t index) const {
     const double k = types_[static_cast<std::size_t>(direction)].stiffness;
     return weights_.empty() ? k : k * static_cast<double>(weights_[static_cast<std::size_t>(index)]);
   }
-  /// Rest length and `factor` k of consecutive springs of a direction, the first of them in this slot.
+  /// Returns rest length and `factor` k of consecutive springs of a direction, the first of them in this
+  /// slot.
   SpringType type(int direction, std::int64_t slot, double factor = 1) const {
     const Type& type = types_[static_cast<std::size_t>(direction)];
     return {factor * type.stiffness, type.rest,
@@ -58,9 +59,9 @@ class SpringEnergy : public Potential {
   }
   std::int64_t count() const { return count_; }
 
-  /// The springs as the inner solver eliminates them; kinds are directions.
+  /// Returns the springs in the elimination order of the inner solver; kinds are directions.
   const std::shared_ptr<const CouplingPattern>& pattern() const { return pattern_; }
-  /// All springs of the pattern, `factor` k.
+  /// Returns all springs of the pattern with `factor` k.
   BlockSprings block_springs(double factor) const;
 
  private:

@@ -38,7 +38,7 @@ MUSLIN_INLINE Force dashpot_law(double k, double least_square, double zx, double
                                 double dy, double dz) {
   const double square = zx * zx + zy * zy + zz * zz;
   const double along = zx * dx + zy * dy + zz * dz;
-  // No division depends on a condition, or the loop would not be vector code.
+  // Divisions are unconditional, or the loop would not vectorise.
   const double directed = square > least_square ? 1.0 : 0.0;
   const double f = directed * k * along / (square + (1.0 - directed));
   return {f, 0.5 * f * along};
@@ -185,7 +185,7 @@ void add_buffered(Columns f, int n, const SpringTargets& to) {
 }  // namespace
 
 std::size_t column_stride(int n) {
-  // An odd number of cache lines, lest columns compete for the same cache sets.
+  // An odd number of cache lines, so that columns do not compete for the same cache sets.
   return (static_cast<std::size_t>(n) + 1023) / 1024 * 1024 + 168;
 }
 

@@ -1,4 +1,4 @@
-// The loops over consecutive springs, as vector code on columns.
+// Declares the loops over consecutive springs, as vector code on columns.
 #pragma once
 
 #include <cstddef>
@@ -27,22 +27,22 @@ inline constexpr double shortest_spring = 1e-12;
 /// Forces are computed for so many springs at most.
 inline constexpr int most_springs = 1024;
 
-/// How far apart columns of n entries lie [entries], and memory of this thread for columns: valid until the
-/// next call on it.
+/// Return the distance between columns of n entries [entries], and this thread's memory for columns, valid
+/// until its next call.
 std::size_t column_stride(int n);
 double* column_memory(std::size_t entries);
 
-/// Columns of n vectors stored x y z x y z ….
+/// Loads n vectors stored x y z x y z … into columns.
 void load_columns(const double* vectors, int n, Columns to);
-/// Columns of p − q.
+/// Loads p − q into columns.
 void load_differences(const double* p, const double* q, int n, Columns to);
 void clear_columns(Columns c, int n);
 /// vectors += columns
 void add_columns(Columns from, int n, double* vectors);
 double sum_of(const double* w, int n);
 
-/// Where forces of springs between vertices go: subtracted from y_a and added to y_b, where these are not
-/// null. b_after_a is b − a.
+/// Output of spring forces: subtracted from y_a and added to y_b, where these are not null. b_after_a is b −
+/// a.
 struct SpringTargets {
   Columns y_a, y_b;
   int b_after_a = 0;

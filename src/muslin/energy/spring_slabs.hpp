@@ -1,11 +1,11 @@
-// How the springs of a lattice are walked: in parallel with the same bits for any thread count, and with
-// vectors as columns (one array per coordinate), which vector code reads and writes without shuffling.
+// SpringSlabs loops over the springs of a lattice: in parallel with the same bits for any thread count, and
+// with vectors as columns (one array per coordinate), which vector code reads and writes without shuffling.
 //
 // Vertices are cut into slabs of consecutive indices (rows and layers of the lattice, since its vertices are
 // sorted), one task each, and slabs into blocks. A slab's task writes to its own vertices only: a spring
 // between two slabs is computed by both. The task turns the vectors it needs into columns block by block
 // shortly before they are used, and adds the result of a block to the caller's vectors when its last spring
-// is done, so that all of it happens in the caches.
+// is done, so that the data stays in the caches.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace muslin {
 
-/// Which ends of a piece's springs lie in the slab that computes it.
+/// The ends of a piece's springs that lie in the slab that computes it.
 enum class Ends : std::uint8_t { both, a, b };
 
 /// Springs a + i — b + i, 0 ≤ i < length, a < b; a in one block and b in one slab.
@@ -52,8 +52,8 @@ class SpringSlabs {
   SpringSlabs(const std::vector<CouplingRun>& runs, int vertex_count);
 
   /// Calls apply(piece, columns) for every spring of every slab; returns the sum of the energies that it
-  /// leaves in columns.w. load(v, n, columns) brings the vectors of n vertices from v into the columns. The
-  /// result is added to y, which may be empty: then springs are computed once each, for their energies.
+  /// writes to columns.w. load(v, n, columns) loads the vectors of n vertices from v into the columns. The
+  /// result is added to y, which may be empty: then each spring is computed once, for its energy.
   template <int inputs, class Load, class Apply>
   double sweep(Vectors y, const Load& load, const Apply& apply) const {
     return parallel_sum(slabs_.size(), 1, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -78,7 +78,7 @@ class SpringSlabs {
     });
   }
 
-  /// The sum (or other combination by +) of term(piece) over all springs, each taken once.
+  /// Returns the sum (or other combination by +) of term(piece) over all springs, each taken once.
   template <class Value, class Term>
   Value sum(Value zero, const Term& term) const {
     return parallel_sum(slabs_.size(), 1, zero, [&](std::size_t begin, std::size_t end) {
@@ -118,7 +118,7 @@ class SpringSlabs {
     for (Columns& c : in) c = columns();
     const Columns out = y.empty() ? Columns{} : columns();
 
-    // Energies of springs that another slab counts go to where nobody looks.
+    // Energies of springs counted by another slab are discarded.
     alignas(64) double w[block_size], counted_elsewhere[block_size] = {};
     double sum = 0;
     int loaded = slab.read_begin, cleared = slab.begin;
@@ -160,7 +160,7 @@ class SpringSlabs {
   std::vector<Slab> slabs_;
 };
 
-/// x_b − x_a of spring i of a piece.
+/// Returns x_b − x_a of spring i of a piece.
 inline Vec3 difference(ConstVectors x, const SpringPiece& piece, int i) {
   return x[static_cast<std::size_t>(piece.b + i)] - x[static_cast<std::size_t>(piece.a + i)];
 }

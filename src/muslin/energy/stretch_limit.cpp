@@ -11,11 +11,12 @@ namespace {
 
 constexpr int lanes = element_lanes;
 constexpr double gravity = 9.81;        // [m/s²]
-constexpr double end_of_barrier = 0.5;  // of the way from onset to limit
-// Stretches nearer to each other than this share of that way count as equal where their difference divides.
+constexpr double end_of_barrier = 0.5;  // share of the range from onset to limit
+// Stretches closer to each other than this share of that range count as equal where their difference is a
+// divisor.
 constexpr double equal = 1e-6;
 
-/// FᵀF in (warp, weft), as its eigenvalues mean ± radius and the direction of the larger one.
+/// FᵀF in (warp, weft), by its eigenvalues mean ± radius and the direction of the larger one.
 struct Stretched : StrainedTriangles {
   double mean[lanes], half[lanes], shear[lanes];
 };
@@ -59,7 +60,7 @@ Principal principal(const StretchBarrier& barrier, double mean, double half, dou
   return p;
 }
 
-/// ψ'/λ: the stress in a principal direction. Below the onset it is zero, be there a stretch or none.
+/// ψ'/λ: the stress in a principal direction. Below the onset it is zero.
 double stress(const Principal& p, int i) { return p.law[i].slope > 0 ? p.law[i].slope / p.stretch[i] : 0; }
 
 double energy(const Principal& p) { return p.law[0].value + p.law[1].value; }
@@ -110,7 +111,7 @@ struct Turned {
 };
 
 /// G = (ψ'(λ₁)/λ₁ − ψ'(λ₂)/λ₂) / (λ₁² − λ₂²). Where the stretches are all but equal, a difference of rounded
-/// numbers would say nothing; there it is the derivative of ψ'/λ halfway between them, over 2 λ.
+/// numbers is meaningless; there it is the derivative of ψ'/λ halfway between them, over 2 λ.
 double shear_stiffness(const StretchBarrier& barrier, const Principal& p) {
   const double high = p.stretch[0], low = p.stretch[1];
   if (2 * p.radius > equal * (barrier.limit() - barrier.onset()) * (high + low))
@@ -132,7 +133,7 @@ void halve(double cosine, double sine, double& c, double& s) {
   }
 }
 
-/// Everything that the stiffness of a batch is made of: F and S in the principal directions.
+/// Data for the stiffness of a batch: F and S in the principal directions.
 struct StiffBatch {
   Turned turned;
   Stiffnesses moduli;

@@ -1,4 +1,4 @@
-// A limit of stretch of a shell, in every direction of every triangle:
+// StretchLimitEnergy limits the stretch of a shell, in every direction of every triangle:
 //
 //   W = Σ A κ (ψ(λ₁) + ψ(λ₂)),
 //
@@ -11,8 +11,8 @@
 //   else         the parabola with the same value, slope and curvature at 1/2,
 //
 // twice continuously differentiable, convex, increasing, finite everywhere: a triangle of three times its
-// length is pulled back. ψ'' is at most 6.39, ψ' is 4.39 d at the limit. So the limit is stiff, but no wall:
-// docs/theory/shells.md says what a wall would cost.
+// length is pulled back. ψ'' is at most 6.39, ψ' is 4.39 d at the limit. The limit is thus stiff, but not
+// hard; docs/theory/shells.md discusses the cost of a hard one.
 //
 // With F = Σ λᵢ uᵢ vᵢᵀ the Hessian has the eigenvalues (the 3 by 2 case of the analysis in Kim, Eberle,
 // Dynamic Deformables, 2022)
@@ -57,9 +57,9 @@ class StretchBarrier {
   Law there_;
 };
 
-/// κ [N/m] for a shell of this membrane stiffness [N/m], mass [kg] and mean edge h [m]: twice the larger of
-/// the first and m g/(h (s₁ − 1)). Where one vertex carries everything the tension is m g/h; the limit is
-/// reached at 4.4 times that, whatever the fabric. g is 9.81 m/s² in every scene.
+/// Returns κ [N/m] for a shell of this membrane stiffness [N/m], mass [kg] and mean edge h [m]: twice the
+/// larger of the first and m g/(h (s₁ − 1)). If one vertex carries all the weight, the tension is m g/h; the
+/// limit is reached at 4.4 times that for any fabric. g is 9.81 m/s² in every scene.
 double stretch_limit_stiffness(double membrane, double mass, double mean_edge, double limit);
 
 class StretchLimitEnergy : public ShellEnergy {

@@ -1,5 +1,6 @@
-// The common part of energies of F = [a, b], the 3 by 2 deformation gradient of a triangle: F from the
-// corners of a batch of triangles, forces on the corners from those conjugate to a and b, and the stiffness
+// Provides the common part of energies of F = [a, b], the 3 by 2 deformation gradient of a triangle: F from
+// the corners of a batch of triangles, forces on the corners from those conjugate to a and b, and the
+// stiffness
 //
 //   d²W = A (C₁₁ (a·da)² + 2 C₁₂ (a·da)(b·db) + C₂₂ (b·db)² + G (a·db + b·da)²)
 //       + S_uu da·da + S_vv db·db + 2 S_uv da·db,
@@ -49,13 +50,13 @@ inline std::vector<std::array<int, 3>> corners_of(const Shell& shell) {
 /// By axis and lane.
 using LaneVectors = double[3][element_lanes];
 
-/// Warp and weft as they have become, and the stress times the area.
+/// Deformed warp and weft, and the stress times the area.
 struct StrainedTriangles {
   LaneVectors a, b;
   double suu[element_lanes], svv[element_lanes], suv[element_lanes];
 };
 
-/// a and b from the corners: the differences from corner 0 times the inverse rest edges.
+/// Computes a and b from the corners: the differences from corner 0 times the inverse rest edges.
 MUSLIN_INLINE void along_threads(const TriangleRest& rest, const Batch<3>& x, LaneVectors& a,
                                  LaneVectors& b) {
   for (int k = 0; k < 3; ++k) {
@@ -67,7 +68,7 @@ MUSLIN_INLINE void along_threads(const TriangleRest& rest, const Batch<3>& x, La
   }
 }
 
-/// Forces on the corners from those conjugate to a and b.
+/// Computes the forces on the corners from those conjugate to a and b.
 MUSLIN_INLINE void to_corners(const TriangleRest& rest, const LaneVectors& pa, const LaneVectors& pb,
                               Batch<3>& f) {
   for (int k = 0; k < 3; ++k) {
@@ -79,7 +80,7 @@ MUSLIN_INLINE void to_corners(const TriangleRest& rest, const LaneVectors& pa, c
   }
 }
 
-/// Forces on the corners from the stress.
+/// Computes the forces on the corners from the stress.
 MUSLIN_INLINE void stress_to_corners(const TriangleRest& rest, const StrainedTriangles& s, Batch<3>& f) {
   LaneVectors pa, pb;
   for (int k = 0; k < 3; ++k) {
@@ -91,7 +92,7 @@ MUSLIN_INLINE void stress_to_corners(const TriangleRest& rest, const StrainedTri
   to_corners(rest, pa, pb, f);
 }
 
-/// Forces on the corners from a motion p of them.
+/// Computes the stiffness times a motion p of the corners.
 template <class Moduli>
 MUSLIN_INLINE void stiffness_product(const Moduli& c, const TriangleRest& rest, const StrainedTriangles& s,
                                      const Batch<3>& p, Batch<3>& y) {
@@ -115,7 +116,7 @@ MUSLIN_INLINE void stiffness_product(const Moduli& c, const TriangleRest& rest, 
   to_corners(rest, pa, pb, y);
 }
 
-/// Adds to `block` the one of corner i with itself, of lane l.
+/// Adds the diagonal block of corner i of lane l to `block`.
 template <class Moduli>
 void add_corner_block(const Moduli& c, const TriangleRest& rest, const StrainedTriangles& s, int l, int i,
                       Mat3& block) {
@@ -171,7 +172,7 @@ MUSLIN_INLINE void find_block_factors(const Moduli& c, const TriangleRest& rest,
   }
 }
 
-/// Adds the blocks of lane l whose rows are of corners that `rows` has a bit for.
+/// Adds the blocks of lane l whose rows belong to corners with a bit in `rows`.
 MUSLIN_INLINE void add_block_rows(const BlockFactors& f, int l, unsigned rows,
                                   const ElementSlabs<3>::Slots& slots, Float4* blocks) {
   const Float4 a = {f.a[0][l], f.a[1][l], f.a[2][l], 0}, b = {f.b[0][l], f.b[1][l], f.b[2][l], 0};

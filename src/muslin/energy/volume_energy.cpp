@@ -28,9 +28,9 @@ void add_face(const int (&face)[4], const Cross& cross, Corners& gradient) {
   at(3) += ab + ac + bc;
 }
 
-/// The volume of a voxel and its gradients with respect to the eight corners.
+/// Volume of a voxel and its gradients with respect to the eight corners.
 struct Volume {
-  Corners from_first;  ///< corners relative to the first: a sum over faces that close does not depend on that
+  Corners from_first;  ///< corners relative to the first: a sum over closed faces does not depend on it
   Corners gradient;
   double volume = 0;
 
@@ -50,7 +50,7 @@ struct Volume {
     }
   }
 
-  /// The change of the gradients when the corners move.
+  /// Computes the change of the gradients when the corners move.
   Corners change(const Corners& moves) const {
     Corners result;
     result.fill(Vec3::Zero());

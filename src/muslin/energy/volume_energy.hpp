@@ -1,13 +1,13 @@
-// Conservation of the volume of each voxel of a lattice.
+// VolumeEnergy conserves the volume of each voxel of a lattice.
 //
 //   W = Σ ½ κ f V₀ (V/V₀ − 1)²,   V₀ = width³
 //
 // with f the fill of the voxel and V the volume within its eight corners, faces taken as bilinear patches. One
-// volume for each voxel, with the corners in equal roles: the six tetrahedra that a voxel is cut into lean
-// towards one diagonal, push a body that bounces aside, and lock. V is a polynomial, so W is smooth everywhere:
-// also a flat or inverted voxel (V ≤ 0) has a force, which turns it back. The idea of keeping volumes beside
-// the springs of a mass-spring system: Teschner, Heidelberger, Müller, Gross 2004, and Diziol, Bender, Bayer
-// 2009 for whole bodies. docs/theory/volume.md.
+// volume for each voxel, with the corners in equal roles: the six tetrahedra of a voxel are biased towards
+// one diagonal, deflect a bouncing body sideways, and lock. V is a polynomial, so W is smooth everywhere:
+// also a flat or inverted voxel (V ≤ 0) has a restoring force. The idea of keeping volumes beside the springs
+// of a mass-spring system: Teschner, Heidelberger, Müller, Gross 2004, and Diziol, Bender, Bayer 2009 for
+// whole bodies. docs/theory/volume.md.
 #pragma once
 
 #include <array>

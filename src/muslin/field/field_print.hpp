@@ -1,4 +1,4 @@
-// A plane slice of the distance field as text: what `muslin field` prints.
+// Prints a plane slice of the distance field as text, for `muslin field`.
 #pragma once
 
 #include <optional>
@@ -30,12 +30,13 @@ struct FieldPrintSettings {
   std::optional<Slice> slice;    ///< if not given: through the middle of the mesh, across its thinnest axis
   Vec3i margin = Vec3i::Ones();  ///< sample rings outside the mesh's bounding box, along x, y, z
   std::optional<double> thickness;  ///< of a mesh with a boundary [m]; if not given, one voxel width; 0 takes
-                                    ///< the mesh as a solid with holes. Closed meshes have no use for it
+                                    ///< the mesh as a solid with holes. Ignored for closed meshes
   bool csv = false;
 };
 
-/// Signed distances on the slice plane itself, at integer multiples of the voxel width in world coordinates:
-/// those inside the mesh's bounding box (thickened, if it is thickened) and `margin` rings around them.
+/// Returns signed distances on the slice plane itself, at integer multiples of the voxel width in world
+/// coordinates: those inside the mesh's bounding box (thickened, if it is thickened) and `margin` rings
+/// around them.
 ///
 /// As a table: three decimals, columns by ascending x, rows by descending y (for a slice x = c: columns z,
 /// rows y; for y = c: columns x, rows z). As CSV: a header and one row `x,y,z,distance` for each sample in
@@ -45,7 +46,7 @@ struct FieldPrintSettings {
 /// 1, slice z=0: figure 5.2 is the box [−0.1,10.1]×[−0.1,6.1]×[−0.1,0.1]; figure 5.9 the box
 /// [0.1,9.9]×[0.1,5.9]×[−0.15,0.15] with margin 1; figure 4.8 a corner of a box of half thickness 0.3 that
 /// starts at x = 0.1, y = 0.6 modulo 1, with margin 3,1.
-/// Errors: usage, if a setting makes no sense or there would be more than 10⁷ samples.
+/// Errors: usage, if a setting is invalid or there would be more than 10⁷ samples.
 std::string print_field(const Mesh& mesh, const FieldPrintSettings& settings);
 
 }  // namespace muslin

@@ -1,5 +1,5 @@
-// Samples are taken in cubes of a few samples a side, each visited along a path from neighbour to neighbour:
-// the last triangle found is the hint for the next, and the sign carries over where it can.
+// The field is sampled in cubes of a few samples a side, each visited along a path from neighbour to
+// neighbour: the last triangle found is the hint for the next, and the sign is propagated where possible.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +14,7 @@ namespace {
 constexpr int cube_side = 8;
 constexpr std::size_t cubes_between_reports = 512;
 
-// Rounding in distances and positions must not let a sign carry over where the surface passes.
+// Rounding in distances and positions must not propagate a sign across the surface.
 constexpr double safety = 1 + 1e-6;
 
 class Sampler {
@@ -34,7 +34,7 @@ class Sampler {
       return;
     }
     bool inside = distance_.inside(centre);
-    // What is known of the last sample: no surface within `clear` of it, unless nothing is known.
+    // There is no surface within `clear` of the last sample; negative if unknown.
     double clear =
         uniform ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
     SurfacePoint last_found = middle;
@@ -78,7 +78,7 @@ class Sampler {
   const SignedDistance& distance_;
   DistanceField& field_;
   const Grid& grid_;
-  double reach_;  // how far triangles are looked for: a step at least, so that signs carry over
+  double reach_;  // search distance for triangles: at least a step, so that signs propagate
 };
 
 }  // namespace

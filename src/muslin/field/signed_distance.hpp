@@ -1,4 +1,4 @@
-// The signed distance of any triangle mesh, exact to rounding, and its samples on a regular grid.
+// Computes the signed distance of any triangle mesh, exact to rounding, and samples it on a regular grid.
 #pragma once
 
 #include <cstdint>
@@ -11,31 +11,30 @@
 
 namespace muslin {
 
-/// Where the surface is nearest.
+/// Nearest point of the surface.
 struct SurfacePoint {
-  double distance;  ///< [m]; infinity if farther than asked
-  int triangle;     ///< index into triangulate(mesh).triangles; −1 if farther than asked
+  double distance;  ///< [m]; infinity if beyond the search distance
+  int triangle;     ///< index into triangulate(mesh).triangles; −1 if beyond the search distance
 };
 
 /// Distance to the surface, negative inside. The magnitude is the exact distance to the nearest triangle
-/// (1e-6 relative or better); the sign is that of the generalised winding number, inside where it exceeds
-/// one half (Barill et al. 2018), so that holes and soup have an inside too.
+/// (1e-6 relative or better); the sign is that of the generalised winding number, inside where it exceeds one
+/// half (Barill et al. 2018), which also works for meshes with holes and triangle soups.
 class SignedDistance {
  public:
-  /// The solid is what the faces enclose, whichever way they are oriented (see orientation.hpp). Meant for
-  /// meshes that pass require_usable (inspect.hpp).
-  /// Errors: input, if there are no faces.
+  /// The solid is the volume enclosed by the faces, for any orientation (see orientation.hpp). Meant for
+  /// meshes that pass require_usable (inspect.hpp). Errors: input, if there are no faces.
   explicit SignedDistance(const Mesh& mesh);
   ~SignedDistance();
   SignedDistance(SignedDistance&&) noexcept;
   SignedDistance& operator=(SignedDistance&&) noexcept;
 
   double operator()(const Vec3& point) const;
-  /// Unsigned distance to the surface.
+  /// Returns the unsigned distance to the surface.
   double distance(const Vec3& point) const;
   bool inside(const Vec3& point) const;
-  /// Unsigned distance, looking no farther than `max_distance`. A `hint`, the triangle nearest to a point
-  /// close by, makes it faster and changes nothing else.
+  /// Returns the unsigned distance, searching up to `max_distance`. A `hint`, the triangle nearest to a point
+  /// close by, only makes it faster.
   SurfacePoint nearest(const Vec3& point, double max_distance, int hint = -1) const;
   /// True if every edge is run as often one way as the other: then the sign changes at the surface only.
   bool watertight() const;
@@ -74,9 +73,9 @@ struct DistanceField {
 };
 
 /// Samples the whole grid, in parallel; the same bits for any thread count. Where the mesh is watertight the
-/// sign is worked out only near the surface and spread from there: between two neighbours whose distances
-/// add up to more than the width it cannot change. `band` ≥ 0 [m], infinity for all samples.
-/// Errors: usage, if the grid or the band makes no sense; interrupted.
+/// sign is computed only near the surface and propagated from there: it cannot change between two neighbours
+/// whose distances add up to more than the width. `band` ≥ 0 [m], infinity for all samples. Errors: usage, if
+/// the grid or the band is invalid; interrupted.
 DistanceField sample_field(const SignedDistance& distance, const Grid& grid, double band,
                            const Progress& progress = {});
 

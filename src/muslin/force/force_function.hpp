@@ -1,4 +1,4 @@
-// Forces that a program computes: F(t, x, v) as a function.
+// ForceFunction applies forces computed by a program: F(t, x, v) as a function.
 #pragma once
 
 #include <functional>
@@ -10,14 +10,14 @@
 namespace muslin {
 
 /// The force F(t, x, v) [N] on every vertex, explicit: read once at the beginning of each step, with the time
-/// [s], positions [m] and velocities [m/s] there, and constant during it (W = −F·x). So a force that is stiff
-/// against the step, such as a strong spring or drag, is unstable just as in an explicit integrator: a drag
-/// F = −c v needs steps below 2 m/c. A step that is halved reads it for each half.
+/// [s], positions [m] and velocities [m/s] there, and constant during it (W = −F·x). A force that is stiff
+/// relative to the step, such as a strong spring or drag, is unstable just as in an explicit integrator: a
+/// drag F = −c v needs steps below 2 m/c. A halved step reads it for each half.
 class ForceFunction : public Load {
  public:
   /// Writes F into `forces`, which is zero; all are #V by 3. Runs in the thread that advances the simulation,
-  /// not in several at once. What it throws leaves Simulation::advance, with the state at the beginning of
-  /// the step.
+  /// not in several at once. Its exceptions leave Simulation::advance, with the state at the beginning of the
+  /// step.
   using Function =
       std::function<void(double time, ConstVectors positions, ConstVectors velocities, Vectors forces)>;
 

@@ -39,7 +39,7 @@ class UniformField : public Potential {
   template <class Also>
   double pass(ConstVectors x, const Also& also) const {
     const Vec3 moment = parallel_sum(x.size(), kGrain, Vec3(Vec3::Zero()), [&](auto begin, auto end) {
-      // Sums that need not wait for each other.
+      // Independent sums, for instruction-level parallelism.
       constexpr std::size_t sums = 4;
       std::array<Vec3, sums> sum;
       sum.fill(Vec3::Zero());

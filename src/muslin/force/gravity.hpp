@@ -1,4 +1,4 @@
-// A uniform acceleration.
+// Gravity is a uniform acceleration.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Turbulence: a smooth random velocity field that the mean wind carries along.
+// gust_noise computes turbulence: a smooth random velocity field carried along by the mean wind.
 #pragma once
 
 #include <cstdint>

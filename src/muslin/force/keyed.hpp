@@ -1,4 +1,4 @@
-// A vector quantity that changes over time, as an animator keys it.
+// Keyed is a keyframed vector quantity that changes over time.
 #pragma once
 
 #include <vector>
@@ -16,20 +16,21 @@ struct Keyed {
   std::vector<Key> keys;  ///< at least one, times ascend strictly
 
   Vec3 at(double time) const;
-  /// ∫₀ᵗ at(s) ds for t ≥ 0, exactly: how far something carried by a keyed velocity has come.
+  /// ∫₀ᵗ at(s) ds for t ≥ 0, exactly: the displacement due to a keyed velocity.
   Vec3 integral(double time) const;
 };
 
-/// The time during which a force acts, and how much of a step that is.
+/// The time during which a force acts, and its share of a step.
 struct Window {
   double from = 0;   ///< [s]
   double until = 0;  ///< [s], may be infinite
 
-  /// The share of the step from `begin` to `end` that lies in the window: 1 inside, 0 outside, between them
-  /// in the step that crosses a border. A force scaled by it gives the exact impulse, wherever the steps
-  /// fall. Shares within 1e-6 of 0 or 1 are rounding of the clock and are snapped.
+  /// Returns the share of the step from `begin` to `end` that lies in the window: 1 inside, 0 outside,
+  /// between them in a step that crosses a border. A force scaled by it gives the exact impulse for any
+  /// steps. Shares within 1e-6 of 0 or 1 are due to rounding of the clock and are snapped.
   double share(double begin, double end) const;
-  /// When to read a keyed value for that step: its end, or the end of the window if that comes first.
+  /// Returns the time at which to read a keyed value for that step: its end, or the end of the window if
+  /// earlier.
   double sample(double end) const;
 };
 

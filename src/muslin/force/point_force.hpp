@@ -1,4 +1,4 @@
-// Forces on single vertices.
+// PointForce applies forces to single vertices.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace muslin {
 
-/// The force f [N] on each of the listed vertices, wherever they go: W = −Σ wᵥ f·xᵥ. f is read at the end of
-/// each step.
+/// The force f [N] on each of the listed vertices, independent of their positions: W = −Σ wᵥ f·xᵥ. f is read
+/// at the end of each step.
 class PointForce : public Load {
  public:
   /// vertices: each at most once; weights: one for each, none for 1 each.

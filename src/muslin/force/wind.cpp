@@ -81,7 +81,7 @@ struct FaceDrag {
   double along = 0;            ///< [kg/s]
   double across = 0;           ///< [kg/s]
   Vec3 normal = Vec3::Zero();  ///< unit
-  Vec3 target = Vec3::Zero();  ///< where the centroid would end if it went with the wind [m]
+  Vec3 target = Vec3::Zero();  ///< where the centroid would end if it moved with the wind [m]
 
   Vec3 times(const Vec3& v) const { return along * v + across * normal.dot(v) * normal; }
 };
@@ -144,7 +144,7 @@ class RelativeDrag : public Potential {
   }
 
  private:
-  /// y += Cᵀ f, C the rows of the centroids: gathered vertex by vertex, so that no two threads meet.
+  /// y += Cᵀ f, C the rows of the centroids: gathered vertex by vertex, so that threads do not conflict.
   template <class Force>
   void scatter(Vectors y, const Force& force) const {
     assert(y.size() == faces_->vertices.size());

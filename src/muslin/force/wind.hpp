@@ -1,4 +1,4 @@
-// Air drag and lift on the faces of a surface that the vertices carry.
+// Wind applies air drag and lift to the faces of a surface carried by the vertices.
 //
 // Per triangle with area A, unit normal n and velocity v of the air relative to it:
 //
@@ -6,7 +6,7 @@
 //   lift  ½ C_L ρ v² A (n·v̂) (n − (n·v̂) v̂)  across it, in the plane of v and n
 //
 // n enters twice, so its sign does not matter. The lift direction is left unnormalised: the lift of a plate
-// goes with sin α cos α and vanishes when the wind blows square on it.
+// is proportional to sin α cos α and vanishes at normal incidence.
 //
 // Semi-implicit: n, A, |n·v| and |v| are those at the start of the step, v is that at its end. The force is
 // then −∂W/∂x of a convex quadratic, so any step length and any wind speed is stable. docs/theory/wind.md.
@@ -25,11 +25,11 @@ namespace muslin {
 
 struct WindSettings {
   Keyed velocity{{{0, Vec3::Zero()}}};  ///< mean velocity of the air [m/s]
-  Window window;                        ///< when it acts; outside, not even still air resists
+  Window window;                        ///< when it acts; outside there is no air resistance
   double air_density = 1.2;             ///< ρ [kg/m³] ≥ 0
   double drag = 1.17;                   ///< C_D ≥ 0; 1.17: a square plate, broadside
   double lift = 0;                      ///< C_L, 0 … C_D: more would pull a face against the wind
-  /// true: an open sheet, each face counts whichever side the wind meets. false: a closed solid with outward
+  /// true: an open sheet, each face counts, whichever side faces the wind. false: a closed solid with outward
   /// faces; only those that face the wind count, and C_D refers to the frontal area as in handbooks.
   bool two_sided = true;
   double gust = 0;         ///< root mean square of each component of the turbulence [m/s] ≥ 0

@@ -28,7 +28,7 @@ AffineFrame equimomental_frame(const MassProperties& body) {
   frame.centre = body.centre;
   const Mat3 square = body.second_moment / body.volume;
   Vec3 squares = square.diagonal();
-  // Along the axes as it stands, where these are principal: a ball's or a cube's are any.
+  // Uses the coordinate axes where these are principal; those of a ball or cube are arbitrary.
   const double off_diagonal = (square - Mat3(squares.asDiagonal())).cwiseAbs().maxCoeff();
   if (off_diagonal > 1e-12 * squares.cwiseAbs().maxCoeff()) {
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(square);

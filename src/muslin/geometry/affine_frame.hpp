@@ -1,12 +1,13 @@
-// Four points that move a rigid body: every point of it is a fixed affine combination of them.
+// AffineFrame holds the four points that move a rigid body: every point of it is a fixed affine combination
+// of them.
 //
 // They are the corners of the equimomental tetrahedron: four equal masses m/4 at
 //
 //   centre + axes · (±a, ±b, ±c),   even number of minus signs,   a² = S_xx / m, …
 //
 // in the principal axes of the second moment S have the body's mass, centre and second moment, hence its
-// inertia tensor (Routh, Dynamics of a System of Rigid Bodies, art. 36). So with x = Σ wᵢ qᵢ the mass matrix
-// of q is exactly m/4 · 1: no lumping.
+// inertia tensor (Routh, Dynamics of a System of Rigid Bodies, art. 36). With x = Σ wᵢ qᵢ the mass matrix of
+// q is therefore exactly m/4 · 1, without lumping.
 #pragma once
 
 #include <array>
@@ -22,13 +23,13 @@ struct AffineFrame {
   Vec3 radii = Vec3::Ones();     ///< a, b, c > 0 [m]
 
   std::array<Vec3, 4> corners() const;
-  /// wᵢ, which sum to 1, of a point of the body where the corners are at rest.
+  /// Returns the wᵢ, which sum to 1, of a point of the body with the corners at rest.
   std::array<double, 4> weights(const Vec3& point) const;
 };
 
-/// Of a body of these mass properties (volume > 0). A radius less than a thousandth of the largest is made
-/// as large as that: a needle's or a foil's spin about its axis or along itself is slower than the real one,
-/// which no picture shows, and the equations stay well conditioned.
+/// Returns the frame of a body of these mass properties (volume > 0). A radius less than a thousandth of the
+/// largest is raised to that: the spin of a needle about its axis, or of a foil along itself, is slower than
+/// the real one, which is invisible in pictures, and the equations stay well conditioned.
 AffineFrame equimomental_frame(const MassProperties& body);
 
 /// Signs of the corners, one row per corner.

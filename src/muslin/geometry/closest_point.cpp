@@ -17,8 +17,8 @@ namespace {
 constexpr int leaf_size = 4;
 constexpr int parallel_leaves = 512;
 
-// Below this squared sine of the angle between two edges the signs of the barycentric coordinates are not
-// trusted, and every edge is tried.
+// Below this squared sine of the angle between two edges the signs of the barycentric coordinates are
+// unreliable, and every edge is tested.
 constexpr double thin_sine_squared = 1e-8;
 
 // Boxes are this share larger and nearer than computed, so that rounding never hides a triangle.
@@ -58,7 +58,7 @@ Triangle make_triangle(const Vec3& a, const Vec3& b, const Vec3& c, int index) {
 }
 
 // Keeps the point a + v·ab + w·ac if it is nearer. The difference is formed from vectors relative to a, so
-// that nothing is lost far from the origin.
+// that no digits are lost far from the origin.
 void offer(const Triangle& triangle, const Vec3& ap, double v, double w, Candidate& best) {
   const Vec3 difference = ap - v * triangle.ab - w * triangle.ac;
   const double squared = difference.squaredNorm();
@@ -151,8 +151,8 @@ void ClosestPointQuery::Tree::fit_box(Node& node, int begin, int end) const {
   node.half.array() += slack * node.half.norm();
 }
 
-// A subtree of L leaves takes 2L − 1 nodes, and all its leaves but the last are full: where everything goes
-// is known beforehand, so both halves can be built at once.
+// A subtree of L leaves takes 2L − 1 nodes, and all its leaves but the last are full: all positions are known
+// beforehand, so both halves can be built in parallel.
 void ClosestPointQuery::Tree::build(int index, int leaves, int begin, int end) {
   Node& node = nodes[static_cast<std::size_t>(index)];
   node.begin = begin;

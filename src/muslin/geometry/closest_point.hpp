@@ -1,9 +1,9 @@
-// The point of a triangle mesh nearest to a given point.
+// ClosestPointQuery finds the point of a triangle mesh nearest to a given point.
 //
-// A tree of boxes, each turned to fit the patch of surface in it (Gottschalk, Lin, Manocha, OBBTree, 1996):
-// they are as thin as the patch is flat, so that far fewer triangles are tried than with boxes along the
-// axes. The distance to one triangle is that of Ericson, Real-Time Collision Detection (2005), §5.1.5, made
-// safe for needles. All in double.
+// It uses a tree of boxes, each oriented to fit the patch of surface in it (Gottschalk, Lin, Manocha,
+// OBBTree, 1996): they are as thin as the patch is flat, so that far fewer triangles are tested than with
+// axis-aligned boxes. The distance to one triangle is that of Ericson, Real-Time Collision Detection (2005),
+// §5.1.5, made safe for needles. All in double.
 #pragma once
 
 #include <limits>
@@ -15,26 +15,25 @@
 namespace muslin {
 
 struct ClosestPoint {
-  int triangle = -1;                                          ///< −1 if none lies within the distance asked
+  int triangle = -1;                                          ///< −1 if none lies within the search distance
   double distance = std::numeric_limits<double>::infinity();  ///< [m], ≥ 0
   Vec3 point = Vec3::Zero();                                  ///< on the triangle [m]
   Vec3 barycentric = Vec3::Zero();                            ///< weights of its corners, ≥ 0, sum 1
 };
 
-/// Reads from any number of threads. Answers depend on the mesh alone, not on how the tree was built: among
+/// Safe to call from several threads. Answers depend on the mesh alone, not on how the tree was built: among
 /// triangles at exactly the same distance the one of smallest index wins.
 class ClosestPointQuery {
  public:
   /// `triangles` (#T by 3) index `positions` (#V by 3), which must be finite. Zero-area triangles count as
-  /// the segments or the point they are.
+  /// segments or points.
   ClosestPointQuery(ConstVectors positions, std::span<const Vec3i> triangles);
   ~ClosestPointQuery();
   ClosestPointQuery(ClosestPointQuery&&) noexcept;
   ClosestPointQuery& operator=(ClosestPointQuery&&) noexcept;
 
-  /// Looks no farther than `max_distance`. A good `hint`, such as the answer for a point close by, only
-  /// makes it faster.
-  /// Errors: usage, if the point is not finite.
+  /// Searches up to `max_distance`. A good `hint`, such as the answer for a point close by, only makes it
+  /// faster. Errors: usage, if the point is not finite.
   ClosestPoint operator()(const Vec3& point, double max_distance = std::numeric_limits<double>::infinity(),
                           int hint = -1) const;
 

@@ -20,8 +20,8 @@ bool in_closed_triangle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2&
 
 }  // namespace
 
-// Dropping the largest axis of the normal is an affine map on the polygon's plane, so it keeps what is
-// convex and what is inside, and it keeps the coordinates exact.
+// Dropping the largest axis of the normal is an affine map on the polygon's plane, so it preserves convexity
+// and inclusion, and keeps the coordinates exact.
 bool EarClipping::project(ConstVectors positions, std::span<const int> face) {
   const Vec3 normal = newell_normal(positions, face);
   int axis = 2;
@@ -101,7 +101,7 @@ bool EarClipping::is_ear(int corner, Rule rule) const {
       if (!blocking_[static_cast<std::size_t>(other)] || other == before || other == corner || other == after)
         continue;
       const Vec2& point = points_[static_cast<std::size_t>(other)];
-      // The two sides of a slit to a hole share points: they hold each other up under the strict rule only.
+      // The two sides of a slit to a hole share points: they block each other only under the strict rule.
       if (rule == Rule::touching && (point == a || point == b || point == c)) continue;
       if (in_closed_triangle(a, b, c, point)) return false;
     }
@@ -126,7 +126,7 @@ void EarClipping::clip(int corner) {
 
 // A cut changes its two neighbours only, so every corner is tested once and then after each cut beside it.
 // When no candidate is left, all corners are tried again: first with the weaker rule, at last by cutting
-// off any corner. The number of such rounds is limited, which keeps hostile outlines from taking for ever.
+// off any corner. The number of such rounds is limited, so that malicious outlines terminate.
 int EarClipping::next_ear(int any, Rule& rule, int& rounds) {
   for (;;) {
     while (head_ < queue_.size()) {

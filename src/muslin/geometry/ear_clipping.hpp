@@ -1,4 +1,4 @@
-// Cutting one polygon into triangles by clipping ears (G. H. Meisters, "Polygons have ears", American
+// EarClipping cuts a polygon into triangles by clipping ears (G. H. Meisters, "Polygons have ears", American
 // Mathematical Monthly 82, 1975).
 #pragma once
 

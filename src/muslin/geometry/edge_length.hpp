@@ -1,4 +1,4 @@
-// How fine a surface is.
+// Computes the mean edge length of a surface.
 #pragma once
 
 #include <limits>
@@ -8,7 +8,8 @@
 
 namespace muslin {
 
-/// Mean length of all sides of the triangles (#T by 3, indices into positions); infinite without any [m].
+/// Returns the mean length of all sides of the triangles (#T by 3, indices into positions); infinite without
+/// any [m].
 inline double mean_edge(ConstVectors positions, std::span<const Vec3i> triangles) {
   if (triangles.empty()) return std::numeric_limits<double>::infinity();
   double sum = 0;

@@ -25,7 +25,7 @@ struct Fault {
   std::string problem, remedy;
 };
 
-// What makes the arrays themselves unusable: after this every index and number can be trusted.
+// Returns a fault that makes the arrays unusable; without one every index and number is valid.
 std::optional<Fault> broken_arrays(const Mesh& mesh) {
   const auto damaged = [](std::string problem) {
     return Fault{std::move(problem), "the file is damaged: export it again"};
@@ -70,7 +70,7 @@ std::optional<Fault> broken_arrays(const Mesh& mesh) {
   return std::nullopt;
 }
 
-// Each edge of each face as one number: the lower vertex, the higher, and the way it is walked.
+// Each edge of each face as one number: the lower vertex, the higher, and its direction.
 void count_edges(const Mesh& mesh, MeshReport& report) {
   std::vector<std::uint64_t> edges(mesh.face_vertices.size());
   parallel_for(mesh.face_count(), grain, [&](std::size_t begin, std::size_t end) {
@@ -122,7 +122,7 @@ void count_components(const Mesh& mesh, MeshReport& report) {
   }
 }
 
-// Two faces are the same if they have the same vertices, in whatever order.
+// Two faces are equal if they have the same vertices, in any order.
 void count_duplicates(const Mesh& mesh, MeshReport& report) {
   std::vector<int> sorted = mesh.face_vertices;
   std::vector<int> order(mesh.face_count());

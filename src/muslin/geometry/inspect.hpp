@@ -1,4 +1,4 @@
-// What is wrong with a mesh, and what kind of mesh it is, before anything is built from it.
+// inspect reports defects and the kind of a mesh before anything is built from it.
 #pragma once
 
 #include <cstddef>
@@ -22,13 +22,13 @@ struct MeshReport {
   bool closed = false;
   int flat_axis =
       -1;  ///< 0, 1, 2 if the faces lie in a plane x, y or z = const (to 1e-9 of the size), else −1
-  std::vector<std::string> warnings;  ///< sentences for the user, each with what to do
+  std::vector<std::string> warnings;  ///< sentences for the user, each with a remedy
 };
-/// For any mesh; if an index or a position is bad, only the counts of vertices and faces and that warning are
-/// filled in. Components are joined by shared vertices.
+/// Works for any mesh; if an index or a position is invalid, only the counts of vertices and faces and that
+/// warning are filled in. Components are joined by shared vertices.
 MeshReport inspect(const Mesh& mesh);
 
-/// Positions beyond this are refused: nothing made of cloth is that far away, so the file is broken. [m]
+/// Positions beyond this are refused, since the file must be broken [m].
 inline constexpr double largest_coordinate = 1e9;
 
 /// Throws Error(input) naming `file` if the mesh cannot be used at all: no vertices, no faces, a position

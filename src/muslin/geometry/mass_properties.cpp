@@ -15,7 +15,7 @@ MassProperties capsule_mass(const Vec3& a, const Vec3& b, double radius) {
   const Vec3 axis = (b - a) / length;
   const double cylinder = std::numbers::pi * r2 * length, ball = 4.0 / 3 * std::numbers::pi * r2 * radius;
   // Across: a disc has r²/4 per axis, a ball r²/5. Along: the half balls have r²/5 about the middle of their
-  // flat side, which stands length/2 from the centre, their own centre of mass 3r/8 farther.
+  // flat side, which is length/2 from the centre, their own centre of mass 3r/8 farther.
   const double across = cylinder * r2 / 4 + ball * r2 / 5;
   const double along =
       cylinder * length * length / 12 + ball * (r2 / 5 + length * length / 4 + 3 * radius * length / 8);

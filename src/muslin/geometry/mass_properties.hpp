@@ -1,5 +1,6 @@
-// Volume, centre and second moments of solids of even density: exact, by closed forms and by integrals over
-// the faces of a polyhedron (Mirtich, Fast and Accurate Computation of Polyhedral Mass Properties, 1996).
+// Computes volume, centre and second moments of solids of uniform density: exact, by closed forms and by
+// integrals over the faces of a polyhedron (Mirtich, Fast and Accurate Computation of Polyhedral Mass
+// Properties, 1996).
 #pragma once
 
 #include <span>
@@ -8,7 +9,7 @@
 
 namespace muslin {
 
-/// Of a solid of density 1. The inertia tensor about the centre is tr(S)·1 − S.
+/// Mass properties of a solid of density 1. The inertia tensor about the centre is tr(S)·1 − S.
 struct MassProperties {
   double volume = 0;                  ///< [m³]
   Vec3 centre = Vec3::Zero();         ///< [m]
@@ -16,12 +17,12 @@ struct MassProperties {
 };
 
 MassProperties sphere_mass(const Vec3& centre, double radius);
-/// Around the segment a b.
+/// For the capsule around the segment a b.
 MassProperties capsule_mass(const Vec3& a, const Vec3& b, double radius);
-/// Along the axes.
+/// For an axis-aligned box.
 MassProperties box_mass(const Vec3& centre, const Vec3& size);
-/// What the triangles (#T by 3, indices into positions) enclose; they must be closed and face outward.
-/// Facing inward turns the signs of volume and second moment.
+/// For the solid enclosed by the triangles (#T by 3, indices into positions), which must be closed and face
+/// outward. Inward faces flip the signs of volume and second moment.
 MassProperties polyhedron_mass(ConstVectors positions, std::span<const Vec3i> triangles);
 
 }  // namespace muslin

@@ -25,7 +25,7 @@ Box Mesh::bounds() const {
 }
 
 Vec3 newell_normal(ConstVectors positions, std::span<const int> face) {
-  // Differences to one corner, so that a small polygon far from the origin keeps its digits.
+  // Uses differences to one corner, so that a small polygon far from the origin keeps its digits.
   const Vec3& origin = positions[static_cast<std::size_t>(face[0])];
   Vec3 sum = Vec3::Zero();
   Vec3 previous = positions[static_cast<std::size_t>(face[1])] - origin;

@@ -1,5 +1,5 @@
-// A polygon mesh as the artist made it: vertex order, polygons, texture seams and groups are kept, because
-// the skin that comes out of a simulation must fit the file that went in.
+// Mesh is a polygon mesh as authored: vertex order, polygons, texture seams and groups are kept, because the
+// simulated skin must match the input file.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ struct Mesh {
   }
   /// Appends a polygon of at least three corners, without texture coordinates. Errors: usage.
   void add_face(std::span<const int> vertices);
-  /// The smallest box around all faces; around all positions if there are no faces.
+  /// Returns the smallest box around all faces; around all positions if there are no faces.
   Box bounds() const;
 };
 
@@ -49,7 +49,7 @@ struct Triangulation {
 /// Indices must be in range (require_usable).
 Triangulation triangulate(const Mesh& mesh);
 
-/// Twice the area of a polygon times its unit normal (Newell's sum): exact for plane polygons, the
+/// Returns twice the area of a polygon times its unit normal (Newell's sum): exact for plane polygons, the
 /// best-fitting plane for others. Not finite or zero if the polygon is degenerate.
 Vec3 newell_normal(ConstVectors positions, std::span<const int> face);
 

@@ -11,7 +11,7 @@
 namespace muslin {
 namespace {
 
-// Disjoint sets of faces that also know whether a face runs with or against the root of its set.
+// Disjoint sets of faces that also store whether a face runs with or against the root of its set.
 class OrientedSets {
  public:
   explicit OrientedSets(std::size_t count) : parent_(count), against_(count, 0), orientable_(count, 1) {
@@ -63,7 +63,7 @@ class OrientedSets {
   std::vector<char> orientable_;
 };
 
-// The vertex of smallest index at the same position.
+// Returns the vertex of smallest index at the same position.
 std::vector<int> weld(ConstVectors positions) {
   std::vector<int> order(positions.size()), first(positions.size());
   std::iota(order.begin(), order.end(), 0);
@@ -89,7 +89,7 @@ struct Component {
   double largest_triangle = -1;
   Vec3 point = Vec3::Zero();  // in the middle of its largest triangle
 
-  // Flat components enclose nothing but rounding.
+  // The volume of flat components is rounding error.
   bool negative(double sign) const { return sign * volume < -1e-9 * area * std::sqrt(area); }
 };
 
@@ -108,7 +108,7 @@ std::vector<int> find_components(std::span<const EdgeUse> uses, std::size_t face
   return component;
 }
 
-// Whether each edge is run as often one way as the other.
+// Returns true if each edge is traversed equally often in both directions.
 bool balanced(std::span<const EdgeUse> uses, const std::vector<char>& turn) {
   bool result = true;
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
@@ -120,7 +120,7 @@ bool balanced(std::span<const EdgeUse> uses, const std::vector<char>& turn) {
   return result;
 }
 
-// 1 for the triangles to turn so that each patch has one orientation, the one most of its area has.
+// Returns 1 for the triangles to flip so that each patch has the orientation of most of its area.
 std::vector<char> turn_within_patches(std::span<const EdgeUse> uses, const std::vector<double>& areas) {
   const Patches patches = find_patches(uses, areas.size());
   std::vector<double> against(patches.orientable.size(), 0);

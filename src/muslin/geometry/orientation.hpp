@@ -1,4 +1,4 @@
-// Which faces share an edge, and a common orientation for faces that do.
+// Finds faces that share an edge and a common orientation for them.
 #pragma once
 
 #include <span>
@@ -17,9 +17,9 @@ struct EdgeUse {
   bool ascends = false;  ///< the face runs from low to high
 };
 
-/// The sides of all faces, sorted by edge, then face, then corner. Faces as in Mesh: face f has corners
-/// face_offsets[f] … face_offsets[f+1]−1, corner c is vertex face_vertices[c]. Sides from a vertex to itself
-/// are left out.
+/// Returns the sides of all faces, sorted by edge, then face, then corner. Faces as in Mesh: face f has
+/// corners face_offsets[f] … face_offsets[f+1]−1, corner c is vertex face_vertices[c]. Sides from a vertex to
+/// itself are left out.
 std::vector<EdgeUse> edge_uses(std::span<const int> face_offsets, std::span<const int> face_vertices);
 
 /// Calls visit(uses of one edge) for each edge of sorted `uses`.
@@ -31,8 +31,8 @@ void for_each_edge(std::span<const EdgeUse> uses, const Visit& visit) {
   }
 }
 
-/// Faces connected through manifold edges (used by exactly two faces), and which of them to turn round so
-/// that they share an orientation.
+/// Faces connected through manifold edges (used by exactly two faces), and those to flip so that they share
+/// an orientation.
 struct Patches {
   std::vector<int> patch;        ///< #F patch of each face, numbered by their first faces
   std::vector<char> turned;      ///< #F 1 if the face runs against the first face of its patch
@@ -40,16 +40,17 @@ struct Patches {
 };
 Patches find_patches(std::span<const EdgeUse> uses, std::size_t face_count);
 
-/// Triangles turned so that their winding number tells inside from outside.
+/// Triangles oriented so that their winding number distinguishes inside from outside.
 struct OrientedTriangles {
   std::vector<Vec3i> triangles;  ///< #T as given, up to orientation
-  /// Each edge is run as often one way as the other: the winding number is a whole number off the surface.
+  /// Each edge is traversed equally often in both directions: the winding number is an integer off the
+  /// surface.
   bool watertight = false;
 };
 
-/// Each patch gets the orientation that most of its area has. Then the whole is turned if it encloses a
-/// negative volume, and single components (connected through edges of any kind) that still do, unless they
-/// lie inside others (a cavity). Vertices at the same position count as one.
+/// Each patch gets the orientation of most of its area. Then the whole is flipped if it encloses a negative
+/// volume, as are single components (connected through edges of any kind) that still do, unless they lie
+/// inside others (a cavity). Vertices at the same position count as one.
 OrientedTriangles orient(ConstVectors positions, std::span<const Vec3i> triangles);
 
 }  // namespace muslin

@@ -1,4 +1,4 @@
-// Points that move as samples say: what a point cache of an animation holds.
+// PointSequence holds points that move along samples, as from the point cache of an animation.
 #pragma once
 
 #include <cstddef>

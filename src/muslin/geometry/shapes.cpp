@@ -97,7 +97,7 @@ Mesh box_mesh(const Vec3& centre, const Vec3& size) {
 }
 
 Mesh plane_mesh(const Vec3& centre, const Vec3& normal, double side) {
-  // The axis farthest from the normal, made orthogonal to it: along an axis if the normal is.
+  // The axis farthest from the normal, made orthogonal to it; a coordinate axis if the normal is one.
   int axis;
   normal.cwiseAbs().minCoeff(&axis);
   const Vec3 n = normal.normalized();

@@ -1,4 +1,4 @@
-// Meshes of simple shapes: how pictures and caches show spheres, capsules, boxes and planes. Faces outward.
+// Makes meshes of spheres, capsules, boxes and planes for pictures and caches. They face outward.
 #pragma once
 
 #include "muslin/core/vectors.hpp"

@@ -36,7 +36,7 @@ class CornerSets {
   std::vector<int> parent_;
 };
 
-// Unit normal of a polygon by Newell's sum; zero if it has no area.
+// Returns the unit normal of a polygon by Newell's sum; zero if it has no area.
 Vec3 polygon_normal(const Mesh& mesh, std::span<const int> face) {
   const Vec3& origin = mesh.positions[static_cast<std::size_t>(face[0])];
   Vec3 sum = Vec3::Zero();
@@ -47,7 +47,7 @@ Vec3 polygon_normal(const Mesh& mesh, std::span<const int> face) {
   return length > 0 ? Vec3(sum / length) : Vec3::Zero();
 }
 
-// Inner angle at corner i of a polygon, up to 2π where it is concave.
+// Returns the inner angle at corner i of a polygon, up to 2π where it is concave.
 double inner_angle(const Mesh& mesh, std::span<const int> face, std::size_t i, const Vec3& normal) {
   const std::size_t n = face.size();
   const auto position = [&](std::size_t k) -> const Vec3& {
@@ -86,7 +86,7 @@ Mesh thicken(const Mesh& mesh, double thickness) {
                : mesh.face_offsets[static_cast<std::size_t>(use.face)];
   };
 
-  // Which corners move together, and which sides of faces need a wall.
+  // Find the corners that move together and the sides of faces that need a wall.
   CornerSets sets(mesh.face_vertices.size());
   for (std::size_t f = 0; f < face_count; ++f) {
     const std::span<const int> face = mesh.face(f);

@@ -1,4 +1,4 @@
-// Giving a sheet a thickness, so that it encloses a solid.
+// Thickens a sheet so that it encloses a solid.
 #pragma once
 
 #include "muslin/geometry/mesh.hpp"
@@ -8,16 +8,16 @@ namespace muslin {
 /// True if no edge is used by one face only: the mesh has no boundary.
 bool is_closed(const Mesh& mesh);
 
-/// A closed, outward oriented mesh of the points within half the thickness [m] of the sheet, measured along
-/// its normals: a copy of the faces on either side and a wall along every open edge. The rim is sharp and
-/// ends where the sheet ends (a flat rectangle becomes a box of the same length and width).
+/// Returns a closed, outward oriented mesh of the points within half the thickness [m] of the sheet, measured
+/// along its normals: a copy of the faces on either side and a wall along every open edge. The rim is sharp
+/// and ends where the sheet ends (a flat rectangle becomes a box of the same length and width).
 ///
 /// Vertices move along the angle-weighted normal of their faces (Thürmer, Wüthrich 1998), by half the
 /// thickness over the cosine that the faces make with it, so that faces move by half the thickness also
 /// where the sheet is creased; by no more than the whole thickness, which creases sharper than 60° reach.
 /// Sheets that meet in an edge of three or more faces each get a thickness of their own, with a wall along
-/// that edge; so do the faces of a sheet that has no two sides (Möbius). UVs and groups are left behind.
-/// Errors: usage, if the thickness is not positive and finite.
+/// that edge; so do the faces of a one-sided sheet (Möbius). UVs and groups are dropped. Errors: usage, if
+/// the thickness is not positive and finite.
 Mesh thicken(const Mesh& mesh, double thickness);
 
 }  // namespace muslin

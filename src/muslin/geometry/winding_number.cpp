@@ -74,8 +74,8 @@ struct WindingNumber::Moments {
   }
 };
 
-// A subtree of L leaves takes 2L − 1 nodes, and all its leaves but the last are full: where everything goes
-// is known beforehand, so both halves can be built at once.
+// A subtree of L leaves takes 2L − 1 nodes, and all its leaves but the last are full: all positions are known
+// beforehand, so both halves can be built in parallel.
 WindingNumber::Moments WindingNumber::build(int node, int leaves, std::span<int> order, int begin,
                                             std::span<const Triangle> triangles) {
   Node& self = nodes_[static_cast<std::size_t>(node)];

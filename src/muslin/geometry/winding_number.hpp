@@ -1,4 +1,5 @@
-// The generalised winding number of a triangle soup: about 1 inside, about 0 outside, smooth across holes.
+// WindingNumber computes the generalised winding number of a triangle soup: about 1 inside, about 0 outside,
+// smooth across holes.
 //
 // Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside segmentation using generalized winding numbers
 // (2013); hierarchy and far field after Barill, Dickson, Schmidt, Levin, Jacobson, Fast winding numbers for
@@ -14,7 +15,7 @@
 
 namespace muslin {
 
-/// Reads from any number of threads; the same bits for any thread count.
+/// Safe to call from several threads; the same bits for any thread count.
 class WindingNumber {
  public:
   /// `triangles` (#T by 3) index `positions` (#V by 3). Orientation is taken as given: counter-clockwise
@@ -29,7 +30,7 @@ class WindingNumber {
   struct Triangle {
     Vec3 a, b, c;
   };
-  // A cluster of triangles seen from afar: moments of its area vectors about `centre`, of which only the
+  // A cluster of triangles for the far field: moments of its area vectors about `centre`, of which only the
   // symmetric parts that the series needs are kept.
   struct Node {
     Vec3 centre = Vec3::Zero();
@@ -49,8 +50,8 @@ class WindingNumber {
   std::vector<Node> nodes_;
 };
 
-/// Solid angle of triangle abc seen from the origin, in (−2π, 2π); positive if the origin is on its inner
-/// side.
+/// Returns the solid angle of triangle abc seen from the origin, in (−2π, 2π); positive if the origin is on
+/// its inner side.
 double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace muslin

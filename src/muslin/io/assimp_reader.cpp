@@ -67,7 +67,7 @@ class AssimpReader {
              "give the file the suffix of its real format, or export it again");
   }
 
-  // assimp applies Collada's unit and up axis itself; FBX's it only reports.
+  // assimp applies Collada's unit and up axis itself, but only reports those of FBX.
   Eigen::Matrix4d to_metres(const aiScene& scene) {
     Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
     if (suffix_ == ".dae") {

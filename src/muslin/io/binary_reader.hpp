@@ -1,4 +1,4 @@
-// Numbers out of bytes, either byte order.
+// Reads numbers from bytes in either byte order.
 #pragma once
 
 #include <bit>
@@ -30,7 +30,7 @@ constexpr std::size_t size_of(Scalar type) {
   return 8;
 }
 
-/// The value of this type and byte order at `bytes`, which holds at least size_of(type) of them.
+/// Returns the value of this type and byte order at `bytes`, which holds at least size_of(type) of them.
 template <class Value>
 Value load(const char* bytes, bool big_endian) {
   unsigned char raw[sizeof(Value)];
@@ -42,7 +42,7 @@ Value load(const char* bytes, bool big_endian) {
   return value;
 }
 
-/// The same for a type known at run time. Every type but float64 fits without loss as well.
+/// The same for a type known at run time. The conversion is lossless for every type.
 inline double load_number(const char* bytes, Scalar type, bool big_endian) {
   switch (type) {
     case Scalar::int8:

@@ -11,8 +11,7 @@
 #include "muslin/io/node_mesh.hpp"
 
 // Compiled here with hidden symbols, not linked: Debian's libdraco, which assimp brings along, exports
-// another version of the same classes, and the linker would mix the two. Images and files are of no interest
-// to it.
+// another version of the same classes, and the linker would mix the two. Images and files are not needed.
 #include <fstream>
 #include <sstream>
 
@@ -34,7 +33,7 @@ bool skip_image(tinygltf::Image*, int, std::string*, std::string*, int, int, con
   return true;
 }
 
-// tinygltf asks for other files through these; user data is the folder, or null.
+// tinygltf reads other files through these; user data is the folder, or null.
 bool file_exists(const std::string& path, void* folder) {
   std::error_code error;
   return folder != nullptr && std::filesystem::is_regular_file(path, error);
@@ -161,7 +160,7 @@ class GltfReader {
     return transform.matrix();
   }
 
-  // The tree is walked with a stack of its own: a hostile file can be as deep as it is long.
+  // The tree is traversed with an explicit stack: a malicious file can be as deep as it is long.
   void visit(int root) {
     std::vector<std::pair<int, Eigen::Matrix4d>> pending{{root, Eigen::Matrix4d::Identity()}};
     while (!pending.empty()) {

@@ -1,4 +1,4 @@
-// glTF 2.0, text and binary, through tinygltf.
+// Reads glTF 2.0, text and binary, through tinygltf.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,9 @@
 
 namespace muslin {
 
-/// All meshes of the scene with the transforms of their nodes. Vertices are welded by position within a node;
-/// several nodes become groups. `file` is for messages; buffers in files of their own are looked for in
-/// `folder`, and refused if that is empty. Errors: input.
+/// Returns all meshes of the scene with the transforms of their nodes. Vertices are welded by position within
+/// a node; several nodes become groups. `file` is for messages; external buffers are searched in `folder`,
+/// and refused if that is empty. Errors: input.
 MeshFile read_gltf(std::string_view bytes, const std::string& file, const std::filesystem::path& folder);
 
 }  // namespace muslin

@@ -1,4 +1,4 @@
-// Groups of a mesh under construction.
+// Helpers for groups of a mesh under construction.
 #pragma once
 
 #include "muslin/geometry/mesh.hpp"
@@ -8,7 +8,7 @@ namespace muslin {
 /// Adds the vertices of the group's faces to its vertices, and sorts and dedups both lists.
 void complete_group(const Mesh& mesh, MeshGroup& group);
 
-/// The name as one word, since a blank ends a name in OBJ: blanks and control characters become '_'.
+/// Returns the name as one word, since a blank ends a name in OBJ: blanks and control characters become '_'.
 std::string one_word(std::string_view name);
 
 }  // namespace muslin

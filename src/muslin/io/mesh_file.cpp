@@ -28,7 +28,7 @@ std::string lower(std::string text) {
 struct Signature {
   std::string_view bytes, suffix, name;
 };
-// What files of other kinds begin with; an empty suffix fits none of ours.
+// First bytes of other file kinds; an empty suffix matches no supported one.
 constexpr std::array signatures = {
     Signature{"\x89PNG", "", "a PNG picture"},
     Signature{"\xFF\xD8\xFF", "", "a JPEG picture"},
@@ -51,7 +51,7 @@ constexpr std::array signatures = {
 void check_signature(std::string_view bytes, const std::string& suffix, const std::string& file) {
   for (const Signature& signature : signatures) {
     if (!bytes.starts_with(signature.bytes) || suffix == signature.suffix) continue;
-    if (suffix == ".gltf" && signature.suffix == ".glb") continue;  // told apart by the reader
+    if (suffix == ".gltf" && signature.suffix == ".glb") continue;  // distinguished by the reader
     throw Error(ErrorKind::input, Place{file},
                 "the content is " + std::string(signature.name) + ", not " + suffix,
                 signature.suffix.empty() ? "give a mesh file"

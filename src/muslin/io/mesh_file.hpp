@@ -1,4 +1,4 @@
-// Mesh files in and out.
+// Reads and writes mesh files.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +15,12 @@ namespace muslin {
 /// file, if it cannot be read; input, with file and line where there is one, if it is malformed.
 struct MeshFile {
   Mesh mesh;
-  std::string note;  ///< what the reader had to change, empty if nothing
+  std::string note;  ///< changes made by the reader, empty if none
 };
 MeshFile read_mesh(const std::filesystem::path& path);
 
-/// The same from memory. `suffix` with its dot names the format, `file` is for messages; buffers that a .gltf
-/// keeps in other files are looked for in `folder`, and refused if that is empty.
+/// The same from memory. `suffix` with its dot names the format, `file` is for messages; external buffers of
+/// a .gltf are searched in `folder`, and refused if that is empty.
 MeshFile read_mesh_from(std::string_view bytes, const std::string& suffix, const std::string& file,
                         const std::filesystem::path& folder = {});
 

@@ -10,7 +10,7 @@
 namespace muslin {
 namespace {
 
-/// Ends a line of names: a backslash at its end would join it to the next line.
+/// Ends a line of names; a trailing backslash would join it to the next line.
 void end_names(std::string& text) {
   if (text.back() == '\\') text.back() = '_';
   text += '\n';

@@ -9,7 +9,7 @@
 namespace muslin {
 namespace {
 
-// Far beyond any mesh that can be simulated; a small file that repeats a mesh many times ends here.
+// Far beyond any mesh that can be simulated; stops small files that instance a mesh many times.
 constexpr std::size_t most_corners = std::size_t{1} << 28;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One mesh out of the nodes of a scene, each with parts and a transform (glTF, FBX, Collada).
+// NodeMesh merges the nodes of a scene, each with parts and a transform, into one mesh (glTF, FBX, Collada).
 #pragma once
 
 #include <span>
@@ -10,14 +10,14 @@
 
 namespace muslin {
 
-/// begin_node, then for each of its parts begin_part, all positions, all texture coordinates, all faces.
+/// Call begin_node, then for each of its parts begin_part, all positions, all texture coordinates, all faces.
 /// Equal positions of one node become one vertex; texture coordinates stay with the corners. Errors: input,
 /// naming the file, at a position that cannot be used or a mesh that grows too large.
 class NodeMesh {
  public:
   explicit NodeMesh(std::string file) : file_(std::move(file)), welder_(mesh_.positions) {}
 
-  /// `transform` takes the node's coordinates to the scene's. If it mirrors, faces are turned around.
+  /// `transform` takes the node's coordinates to the scene's. If it mirrors, faces are reversed.
   void begin_node(const std::string& name, const Eigen::Matrix4d& transform);
   /// `uvs` is 0 or `positions`.
   void begin_part(std::size_t positions, std::size_t uvs);
@@ -26,7 +26,7 @@ class NodeMesh {
   /// Indices into the positions of this part.
   void face(std::span<const std::size_t> corners);
 
-  /// The mesh with one group per node if there are several, and a note that says what was done.
+  /// Returns the mesh with one group per node if there are several, and a note on the changes.
   MeshFile finish(const std::string& reason, const std::string& extra);
 
  private:

@@ -11,7 +11,7 @@
 namespace muslin {
 namespace {
 
-// Statements that say nothing about positions, polygons, texture coordinates or groups.
+// Ignored statements, unrelated to positions, polygons, texture coordinates or groups.
 constexpr std::array ignored = {"vn",    "vp",    "s",        "usemtl",   "mtllib", "usemap",     "maplib",
                                 "mg",    "deg",   "bmat",     "step",     "cstype", "curv",       "curv2",
                                 "surf",  "parm",  "trim",     "hole",     "scrv",   "sp",         "end",

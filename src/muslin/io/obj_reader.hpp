@@ -1,4 +1,4 @@
-// Wavefront OBJ, read as written: vertex order, polygons, texture seams, groups and objects.
+// Reads Wavefront OBJ as written: vertex order, polygons, texture seams, groups and objects.
 #pragma once
 
 #include <string>

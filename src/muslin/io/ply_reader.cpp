@@ -77,7 +77,7 @@ class PlyReader {
     header();
     for (const Element& element : elements_) {
       const std::size_t least = element.least_size(format_ == Format::ascii);
-      if (least == 0) continue;  // entries of nothing, however many
+      if (least == 0) continue;  // empty entries, in any number
       if (element.count > (bytes_.size() - at_) / least)
         refuse("there are too few bytes for " + std::to_string(element.count) + " entries of '" +
                element.name + "'");

@@ -1,4 +1,4 @@
-// PLY (G. Turk, "The PLY polygon file format", Stanford 1994), ASCII and binary of either byte order.
+// Reads PLY (G. Turk, "The PLY polygon file format", Stanford 1994), ASCII and binary of either byte order.
 #pragma once
 
 #include <string>

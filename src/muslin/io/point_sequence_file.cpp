@@ -47,7 +47,7 @@ void read_positions(PointSequence& sequence, std::string_view bytes, bool big_en
   }
 }
 
-/// Samples that the bytes behind the header hold, which must be as many as it promises.
+/// Returns the number of samples after the header, which must match the header.
 void require_samples(std::size_t bytes, std::int64_t points, std::int64_t samples, const std::string& file) {
   if (points <= 0 || samples <= 0)
     refuse(file, "the cache has no points or no samples", "export the animation again");

@@ -1,4 +1,4 @@
-// Reading animated points: PC2 and MDD point caches, numbered OBJ files.
+// Reads animated points from PC2 and MDD point caches and numbered OBJ files.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace muslin {
 /// `.pc2`: sample n at start + n·rate frames. `.mdd`: at its own times. `NAME.####.obj`: the files whose
 /// number stands for the #, from the smallest on, one a frame, vertices only. A frame lasts 1/frame_rate;
 /// positions are metres, y up. Errors: file; input, if the file is damaged, has no sample or a position that
-/// is no number or beyond 1e9 m.
+/// is not finite or beyond 1e9 m.
 PointSequence read_point_sequence(const std::filesystem::path& path, double frame_rate);
 
 /// The two caches from memory; `suffix` is ".pc2" or ".mdd", `file` is for messages.

@@ -85,7 +85,7 @@ class AsciiStl {
 
   void facet() {
     expect("normal");
-    for (int axis = 0; axis < 3; ++axis) scanner_.next_word();  // of no use, and often not a number
+    for (int axis = 0; axis < 3; ++axis) scanner_.next_word();  // unused, and often not a number
     expect("outer");
     expect("loop");
     std::vector<int> face;

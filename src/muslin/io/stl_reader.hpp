@@ -1,4 +1,4 @@
-// STL, ASCII and binary: triangles stored apart, welded by position.
+// Reads STL, ASCII and binary; its separate triangles are welded by position.
 #pragma once
 
 #include <string>

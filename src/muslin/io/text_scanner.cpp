@@ -12,7 +12,7 @@ namespace {
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
-// A word as it can be shown: short, and without control characters.
+// Returns a word fit for display: short, and without control characters.
 std::string quoted(std::string_view word) {
   std::string text = "'";
   for (const char c : word.substr(0, 40)) text += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
@@ -98,7 +98,7 @@ double TextScanner::number(std::string_view word, const char* what) const {
   double value = 0;
   const auto [stop, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = stop == digits.data() + digits.size();
-  // Too small to be held is 0; too large is caught below.
+  // Underflow gives 0; overflow is caught below.
   if (whole && code == std::errc::result_out_of_range)
     value = digits.find("e-") != digits.npos || digits.find("E-") != digits.npos ||
                     digits.starts_with("0.") || digits.starts_with("-0.")

@@ -1,4 +1,5 @@
-// Words and numbers of a text file, with the place of each for error messages. Any line ends: LF, CRLF, CR.
+// TextScanner splits a text file into words and numbers, with the place of each for error messages. Any line
+// ends: LF, CRLF, CR.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +19,20 @@ class TextScanner {
   /// `text` must outlive the scanner; `file` is for messages.
   TextScanner(std::string_view text, std::string file, Syntax syntax);
 
-  /// The next word of this line; empty at its end.
+  /// Returns the next word of this line; empty at its end.
   std::string_view word();
-  /// The next word of this or a later line; empty at the end of the text.
+  /// Returns the next word of this or a later line; empty at the end of the text.
   std::string_view next_word();
-  /// Goes to the line after this one; false at the end of the text.
+  /// Advances to the next line; false at the end of the text.
   bool next_line();
-  /// All that is left of this line, without blanks around it.
+  /// Returns the rest of this line, without blanks around it.
   std::string_view rest_of_line();
 
-  /// The word as a finite number. Errors: input, telling what it was meant to be.
+  /// Returns the word as a finite number. Errors: input, naming the expected quantity.
   double number(std::string_view word, const char* what) const;
-  /// A number that can be a position: at most largest_coordinate.
+  /// Returns a number valid as a position: at most largest_coordinate.
   double coordinate(std::string_view word) const;
-  /// A number that a texture coordinate may have: any that a float can hold.
+  /// Returns a number valid as a texture coordinate: any that a float can hold.
   double texture_coordinate(std::string_view word) const;
   std::int64_t integer(std::string_view word, const char* what) const;
 

@@ -1,4 +1,4 @@
-// Joining the corners of formats that store each face, or each side of a seam, apart.
+// Welder joins the corners of formats that store each face, or each side of a seam, separately.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ class Welder {
  public:
   /// Vertices are appended to `positions`; those already there are not joined with.
   explicit Welder(std::vector<Vec3>& positions) : positions_(positions), slots_(64, -1) {}
-  /// The vertex at this position, which must be finite.
+  /// Returns the vertex at this position, which must be finite.
   int vertex(const Vec3& position);
   /// Later positions are not joined with earlier ones.
   void start_anew();

@@ -1,4 +1,4 @@
-// From kept voxels to a connected lattice: its vertices and each voxel's corners.
+// Connects kept voxels to a lattice: its vertices and each voxel's corners.
 #pragma once
 
 #include "muslin/lattice/lattice.hpp"

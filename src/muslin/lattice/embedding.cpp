@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::size_t grain = 4096;
 
-/// Squared distance along one axis from x to the interval [i, i+1].
+/// Returns the squared distance along one axis from x to the interval [i, i+1].
 double gap(double x, int i) {
   const double d = std::max({i - x, x - (i + 1.0), 0.0});
   return d * d;
 }
 
-/// The kept voxel nearest to a point outside all of them, ties to the lower index.
+/// Returns the kept voxel nearest to a point outside all of them, ties to the lower index.
 class NearestVoxel {
  public:
   explicit NearestVoxel(const RowIndex& rows) : rows_(rows) {}

@@ -1,4 +1,4 @@
-// Points carried by a lattice: a linear map x = J q from lattice vertices to points.
+// Embedding maps lattice vertices linearly to the points they carry, x = J q.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ struct Embedding {
   std::size_t size() const { return vertices.size(); }
   /// points = J q; q is #V by 3, points #P by 3.
   void apply(ConstVectors q, Vectors points) const;
-  /// forces_q += Jᵀ f. The sums run over the points in ascending order, so the bits never depend on the
-  /// number of threads; it runs in parallel once prepare_transpose() was called.
+  /// forces_q += Jᵀ f. The sums run over the points in ascending order, so the bits do not depend on the
+  /// number of threads; it runs in parallel after prepare_transpose().
   void add_transpose(ConstVectors f, Vectors forces_q) const;
   /// Lists the points that each of `vertex_count` vertices carries. Call again after changing the weights.
   void prepare_transpose(std::size_t vertex_count);
@@ -30,9 +30,9 @@ struct Embedding {
   std::vector<std::int64_t> slots_;  ///< 8·point + corner of every nonzero weight
 };
 
-/// Trilinear weights of the voxel each point lies in at rest; a point outside all voxels is carried by the
-/// nearest one (extrapolated). A point in a face shared by voxels is carried by any of them: the weights are
-/// the same. Prepared for the transpose.
+/// Returns the trilinear weights of the voxel each point lies in at rest; a point outside all voxels is
+/// carried by the nearest one (extrapolated). A point in a face shared by voxels is carried by any of them:
+/// the weights are the same. Prepared for the transpose.
 Embedding embed(const Lattice& lattice, ConstVectors points);
 
 }  // namespace muslin

@@ -1,4 +1,5 @@
-// How much of a voxel a solid fills, by sampling; for meshes whose volume cannot be computed exactly.
+// Computes the share of a voxel filled by a solid, by sampling; for meshes whose volume cannot be computed
+// exactly.
 #pragma once
 
 #include "muslin/core/vectors.hpp"
@@ -6,8 +7,8 @@
 
 namespace muslin {
 
-/// Share of 8³ sample points inside the solid, for the cube of this centre and width. Octants farther from
-/// the surface than their half diagonal are decided by one sample.
+/// Returns the share of 8³ sample points inside the solid, for the cube of this centre and width. Octants
+/// farther from the surface than their half diagonal are decided by one sample.
 double sampled_fill(const SignedDistance& distance, const Vec3& centre, double width);
 
 }  // namespace muslin

@@ -23,7 +23,7 @@ namespace muslin {
 namespace {
 
 constexpr std::int64_t most_voxels = std::int64_t{1} << 30;
-/// Of a body of many voxels while it is built, 385 measured; a run takes more.
+/// Memory of a body of many voxels while it is built, 385 measured; a run takes more.
 constexpr double bytes_per_voxel = 385;
 constexpr double least_fill = 1e-3;
 constexpr std::size_t row_grain = 64;
@@ -53,7 +53,7 @@ Size measure(const Mesh& mesh, const Triangulation& triangulation) {
 }
 
 [[noreturn]] void throw_too_fine(double width, double count, const Size& size) {
-  // The width that gives some four million voxels.
+  // The width that gives about four million voxels.
   const double target = 1 << 22;
   const double coarser =
       std::max(std::cbrt(std::abs(size.volume) / target), std::sqrt(0.5 * size.area / target));
@@ -63,7 +63,7 @@ Size measure(const Mesh& mesh, const Triangulation& triangulation) {
               "use a larger voxel width; " + number(coarser) + " m gives a few million voxels");
 }
 
-/// The number of voxels along each axis: whole numbers of widths are told from their rounding.
+/// Returns the number of voxels along each axis; near-integer multiples of the width are rounded.
 VoxelKeys place_grid(const Box& bounds, const LatticeSettings& settings, const Size& size) {
   const int margin = settings.rule == VoxelRule::threshold
                          ? static_cast<int>(std::max(0.0, std::ceil(settings.threshold - 0.5 - 1e-6)))
@@ -142,7 +142,7 @@ std::vector<Candidate> candidates_of(const std::vector<SurfaceVoxel>& voxels, co
   return candidates;
 }
 
-/// True if the exact volumes make sense: nowhere is the solid counted twice.
+/// True if the exact volumes are valid: no part of the solid is counted twice.
 bool is_simple(const std::vector<Candidate>& candidates) {
   constexpr double tolerance = 1e-5;
   return std::all_of(candidates.begin(), candidates.end(), [](const Candidate& c) {
@@ -172,7 +172,8 @@ class Builder {
     });
   }
 
-  /// The kept voxels of a closed mesh: between candidates of a row all voxels are on one side of the surface.
+  /// Finds the kept voxels of a closed mesh: between candidates of a row all voxels are on one side of the
+  /// surface.
   void fill_rows(const std::vector<Candidate>& candidates, Lattice& lattice) const {
     std::vector<std::size_t> rows;
     for (std::size_t c = 0; c < candidates.size(); ++c)
@@ -217,9 +218,9 @@ class Builder {
     }
   }
 
-  /// The kept voxels of a mesh with holes: the inside is bounded by no surface there, so it is followed from
-  /// the candidates, voxel by voxel. It is connected to them because the winding number, a harmonic function
-  /// off the surface, has no maximum elsewhere.
+  /// Finds the kept voxels of a mesh with holes: the inside is not bounded by the surface there, so it is
+  /// flood-filled from the candidates. It is connected to them because the winding number, a harmonic
+  /// function off the surface, has no maximum elsewhere.
   void flood(const std::vector<Candidate>& candidates, Lattice& lattice) const {
     std::vector<std::pair<std::uint64_t, double>> kept;
     std::vector<std::uint64_t> before, wave, sources;
@@ -290,7 +291,7 @@ class Builder {
     return found;
   }
 
-  /// parallel_for in batches, with progress from one fraction to another between them.
+  /// Runs parallel_for in batches and reports progress from one fraction to another between them.
   template <class Body>
   void for_batches(std::size_t count, std::size_t grain, double from, double to, const Body& body) const {
     const std::size_t batch = 256 * grain;

@@ -1,4 +1,4 @@
-// The voxels of a solid and what is made of them: vertices, springs by direction, tetrahedra.
+// Lattice holds the voxels of a solid and their vertices, from which springs and tetrahedra are made.
 //
 // Integer coordinates (i,j,k) count voxels from `origin` along x, y, z; voxel (i,j,k) spans
 // origin + width·[i,i+1]×[j,j+1]×[k,k+1]. Voxels and vertices are sorted by (j,k,i): x runs fastest, then z,
@@ -18,9 +18,8 @@
 namespace muslin {
 
 enum class VoxelRule {
-  /// Every voxel whose interior meets the solid: the union contains the mesh, none is wasted. A surface
-  /// within
-  /// 1e-6·width of a voxel's face lies in the face and not in the interior.
+  /// Every voxel whose interior meets the solid: the union contains the mesh, with no unnecessary voxel. A
+  /// surface within 1e-6·width of a voxel's face lies in the face and not in the interior.
   cover,
   threshold,  ///< voxels with distance(centre) < threshold·width; ties within 1e-6·width are out
 };
@@ -37,8 +36,8 @@ struct Lattice {
   Vec3i extent = Vec3i::Zero();  ///< voxels of the bounding grid along x, y, z
 
   std::vector<Vec3i> voxels;  ///< #C kept voxels
-  /// #C share of the voxel that the solid fills, in [1e-3, 1]: a lower share would leave springs and masses
-  /// that no step can handle. Exact for a closed mesh without self-overlap, else from 8³ samples.
+  /// #C share of the voxel that the solid fills, in [1e-3, 1]: a lower share would make springs and masses
+  /// too small for any step. Exact for a closed mesh without self-overlap, else from 8³ samples.
   std::vector<double> fill;
   std::vector<std::array<int, 8>> voxel_vertices;  ///< #C corner c at offset (c&1, c>>1&1, c>>2&1) in x, y, z
   std::vector<Vec3i> vertices;                     ///< #V integer coordinates
@@ -48,7 +47,7 @@ struct Lattice {
   std::size_t voxel_count() const { return voxels.size(); }
   std::size_t vertex_count() const { return vertices.size(); }
   Vec3 rest_position(std::size_t v) const { return origin + width * vertices[v].cast<double>(); }
-  /// Index of the voxel at these coordinates, −1 if it is not kept.
+  /// Returns the index of the voxel at these coordinates, −1 if it is not kept.
   int find_voxel(const Vec3i& coordinates) const;
   int find_vertex(const Vec3i& coordinates) const;
 };
@@ -57,7 +56,7 @@ struct Lattice {
 /// with at least one voxel along every axis; a size that is a whole number of widths, up to 1e-6·width, gives
 /// that many voxels. For thresholds above one half the grid is wider by the voxels that may be kept around
 /// the box. Memory and time grow with the kept voxels, not with the grid. Same bits for any thread count.
-/// Errors: usage, if a setting is not a usable number; input, if no voxel is kept or more than 2³⁰ would be.
+/// Errors: usage, if a setting is invalid; input, if no voxel is kept or more than 2³⁰ would be.
 Lattice build_lattice(const Mesh& mesh, const SignedDistance& distance, const LatticeSettings& settings,
                       const Progress& progress = {});
 

@@ -1,4 +1,4 @@
-// The springs of a lattice, by direction, and its tetrahedra.
+// Builds the springs of a lattice, by direction, and its tetrahedra.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct SpringDirection {
 std::vector<SpringDirection> spring_directions(Bracing bracing);
 
 /// Springs of one direction along one contiguous piece of a row: spring i joins vertex a + i to b + i, for
-/// 0 ≤ i < length, and has index first + i. No index arrays are needed to walk a lattice.
+/// 0 ≤ i < length, and has index first + i. Traversing a lattice needs no index arrays.
 struct SpringRun {
   int direction = 0;  ///< index into spring_directions()
   int a = 0;
@@ -47,8 +47,8 @@ struct Springs {
 };
 Springs build_springs(const Lattice& lattice, Bracing bracing);
 
-/// Six positively oriented tetrahedra per voxel (Kuhn / Freudenthal), sharing the voxel's (1,1,1) diagonal;
-/// faces of neighbouring voxels match. Shape 6·#C.
+/// Returns six positively oriented tetrahedra per voxel (Kuhn / Freudenthal), sharing the voxel's (1,1,1)
+/// diagonal; faces of neighbouring voxels match. Shape 6·#C.
 std::vector<std::array<int, 4>> build_tetrahedra(const Lattice& lattice);
 
 }  // namespace muslin

@@ -152,7 +152,7 @@ std::vector<SurfaceVoxel> cut_surface(const Mesh& mesh, const Triangulation& tri
                                       const VoxelKeys& grid, const Progress& progress) {
   const auto& triangles = triangulation.triangles;
   std::vector<Piece> pieces;
-  // Batches, so that the user hears of progress and can stop.
+  // Batches, for progress reports and cancellation.
   const std::size_t batch = 64 * triangle_grain;
   for (std::size_t start = 0; start < triangles.size(); start += batch) {
     progress.at(0.5 * static_cast<double>(start) / static_cast<double>(triangles.size()), "lattice");

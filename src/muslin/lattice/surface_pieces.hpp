@@ -1,5 +1,5 @@
-// A triangle mesh cut along the faces of a voxel grid: which voxels the surface passes, and how much of each
-// lies behind it.
+// Cuts a triangle mesh along the faces of a voxel grid to find the voxels that the surface passes and the
+// part of each behind it.
 #pragma once
 
 #include <cstdint>
@@ -43,15 +43,15 @@ struct SurfaceVoxel {
   double moment = 0;     ///< ∫ n_x (x − x₀) dA, x₀ the voxel's lower face
 };
 
-/// The voxels passed by the triangles, ascending by key, each once. Surface that lies in a face between two
-/// voxels is counted in one of them. Same bits for any thread count.
+/// Returns the voxels passed by the triangles, in ascending order of keys, each once. Surface that lies in a
+/// face between two voxels is counted in one of them. Same bits for any thread count.
 std::vector<SurfaceVoxel> cut_surface(const Mesh& mesh, const Triangulation& triangulation,
                                       const VoxelKeys& grid, const Progress& progress);
 
 /// Surface this close to a voxel's face [voxel widths] lies in the face.
 inline constexpr double face_tolerance = 1e-6;
 
-/// Area [m²] of the mesh inside the closed voxels with ascending `keys`.
+/// Returns the area [m²] of the mesh inside the closed voxels with ascending `keys`.
 double area_within(const Mesh& mesh, const Triangulation& triangulation, const VoxelKeys& grid,
                    const std::vector<std::uint64_t>& keys);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
-/// The Voigt vector of the symmetric matrix u uᵀ, off-diagonal entries once.
+/// Returns the Voigt vector of the symmetric matrix u uᵀ, off-diagonal entries once.
 Vec6 voigt_square(const Vec3& u) {
   Vec6 result;
   result << u.x() * u.x(), u.y() * u.y(), u.z() * u.z(), u.y() * u.z(), u.x() * u.z(), u.x() * u.y();
@@ -28,7 +28,7 @@ struct Response {
   double stiffness = 0;  ///< stress over its own strain [N/m²]
 };
 
-/// Answers many stresses on one lattice, whose stiffness may be singular.
+/// Computes strains for many stresses on one lattice, whose stiffness may be singular.
 class Specimen {
  public:
   explicit Specimen(const StiffnessMatrix& stiffness) : stiffness_(stiffness), solver_(stiffness) {}
@@ -46,7 +46,7 @@ class Specimen {
   Eigen::CompleteOrthogonalDecomposition<StiffnessMatrix> solver_;
 };
 
-/// Voigt's and Reuss's averages of bulk and shear modulus, then their mean (Hill).
+/// Computes Voigt's and Reuss's averages of bulk and shear modulus, then their mean (Hill).
 double hill_youngs_modulus(const StiffnessMatrix& c) {
   const auto sums = [](const StiffnessMatrix& a) {
     return std::array{a(0, 0) + a(1, 1) + a(2, 2), a(0, 1) + a(1, 2) + a(0, 2), a(3, 3) + a(4, 4) + a(5, 5)};
@@ -67,7 +67,8 @@ double hill_youngs_modulus(const StiffnessMatrix& c) {
   return bulk > 0 ? 9 * bulk * rigidity / (3 * bulk + rigidity) : 0;
 }
 
-/// Springs of edge modulus 1 − s and diagonals s: from no diagonals (s = 0) to nothing else (s = 1).
+/// Returns springs of edge modulus 1 − s and diagonals s: from no diagonals (s = 0) to diagonals only (s =
+/// 1).
 SpringModuli mixture(double s) { return {1 - s, s, s}; }
 
 }  // namespace

@@ -1,7 +1,7 @@
-// From the springs of a lattice to the elastic moduli of the solid it stands for, and back.
+// Converts between the springs of a lattice and the elastic moduli of the solid it models.
 //
-// Every vertex of the lattice has a spring along each direction ±o, so an even strain moves all vertices
-// evenly and the solid's stiffness is the sum (Born and Huang 1954, §11)
+// Every vertex of the lattice has a spring along each direction ±o, so a uniform strain moves all vertices
+// uniformly and the solid's stiffness is the sum (Born and Huang 1954, §11)
 //
 //   C_ijkl = Σ over directions o of  m_o · o_i o_j o_k o_l / |o|²,
 //
@@ -28,10 +28,11 @@ struct SpringModuli {
 /// Voigt's order xx, yy, zz, yz, xz, xy; shear strains are γ = 2ε.
 using StiffnessMatrix = Eigen::Matrix<double, 6, 6>;
 
-/// σ = C ε of a block of lattice [N/m²]. Volume conservation adds its modulus to the bulk modulus.
+/// Returns C in σ = C ε of a block of lattice [N/m²]. Volume conservation adds its modulus to the bulk
+/// modulus.
 StiffnessMatrix lattice_stiffness(const SpringModuli& moduli, Bracing bracing, double volume_modulus = 0);
 
-/// What a test specimen cut along the lattice's axes would show. The three axes are alike.
+/// Moduli of a test specimen cut along the lattice's axes. The three axes are equivalent.
 struct ElasticModuli {
   double youngs = 0;   ///< pulled along an axis [N/m²]
   double poisson = 0;  ///< contraction across over stretch along; 0 if nothing resists a pull
@@ -41,17 +42,17 @@ struct ElasticModuli {
 };
 ElasticModuli elastic_moduli(const SpringModuli& moduli, Bracing bracing, double volume_modulus = 0);
 
-/// Young's modulus of a pull along the unit vector `direction` [N/m²].
+/// Returns Young's modulus of a pull along the unit vector `direction` [N/m²].
 double youngs_modulus(const StiffnessMatrix& stiffness, const Vec3& direction);
 
-/// Springs of which a block has this Young's and shear modulus along its axes [N/m²]; face and body
+/// Returns springs of which a block has this Young's and shear modulus along its axes [N/m²]; face and body
 /// diagonals get the same modulus. Without a shear modulus it is 0.4 × Young's, which makes full bracing
-/// isotropic with Poisson's ratio ¼; Poisson's ratio cannot be chosen apart (springs pull along their
+/// isotropic with Poisson's ratio ¼; Poisson's ratio cannot be chosen independently (springs pull along their
 /// length: C12 = C44, Cauchy's relation), except by a volume modulus. Errors: input, unless Young's modulus
 /// is positive and the shear modulus ≥ 0 and below greatest_shear_ratio × Young's.
 SpringModuli springs_for(double youngs, std::optional<double> shear, Bracing bracing);
 
-/// The shear modulus that springs_for can reach is less than this times Young's modulus.
+/// Returns the limit, exclusive, of the shear over Young's modulus that springs_for can reach.
 double greatest_shear_ratio(Bracing bracing);
 
 }  // namespace muslin

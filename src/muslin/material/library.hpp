@@ -1,4 +1,4 @@
-// The texts of materials/*.toml, compiled into the library when it is configured.
+// Provides the texts of materials/*.toml, compiled into the library when it is configured.
 #pragma once
 
 #include <span>

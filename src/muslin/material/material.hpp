@@ -1,4 +1,4 @@
-// What a body is made of, and the library of materials that comes with muslin.
+// Material holds the material data of a body; muslin comes with a library of materials.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,13 @@
 
 namespace muslin {
 
-/// The numbers of a lattice, whose spring constants are modulus × voxel width, and those of a shell. A
+/// The quantities of a lattice, whose spring constants are modulus × voxel width, and those of a shell. A
 /// material has at least one of the two.
 struct Material {
   std::string name;
   std::string description;
-  std::string source;                ///< where the numbers are from
-  bool has_lattice = true;           ///< the next seven numbers mean something
+  std::string source;                ///< source of the numbers
+  bool has_lattice = true;           ///< the next seven numbers are valid
   double density = 0;                ///< [kg/m³]
   double edge_modulus = 0;           ///< [N/m²]
   double face_diagonal_modulus = 0;  ///< [N/m²]
@@ -27,17 +27,18 @@ struct Material {
   double mass_damping = 0;           ///< Rayleigh α [1/s]
   double stiffness_damping = 0;      ///< Rayleigh β [s]
   std::optional<ShellMaterial> shell;
-  /// Measured numbers of the real material that go with it, for the reader; the simulation uses none.
+  /// Measured numbers of the real material, for information only.
   std::vector<std::pair<std::string, double>> reference;
 };
 
-/// The materials that come with muslin, in alphabetical order. They are compiled into the library.
+/// Returns the names of the materials that come with muslin, in alphabetical order. They are compiled into
+/// the library.
 std::vector<std::string> material_names();
 
-/// The material of this name. Errors: input, naming the nearest one.
+/// Returns the material of this name. Errors: input, naming the nearest one.
 Material find_material(const std::string& name);
 
-/// A material file: `name`, `description`, `source`, a table [lattice] and a table [shell] with the
+/// Reads a material file: `name`, `description`, `source`, a table [lattice] and a table [shell] with the
 /// quantities above, one of them or both, and a table [reference] of free numbers. Errors: file; input with
 /// file, line and column.
 Material read_material(const std::filesystem::path& file);

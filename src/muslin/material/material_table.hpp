@@ -1,4 +1,4 @@
-// The quantities of a material as keys of a TOML table: in a material file and in a scene.
+// Reads the quantities of a material from keys of a TOML table, in a material file or a scene.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace muslin {
 
-/// density, edge_modulus, …: the keys of the quantities of Material.
+/// Returns density, edge_modulus, …: the keys of the quantities of Material.
 const std::vector<std::string>& material_keys();
 
-/// Puts the quantities that `table` has into `material`. Errors: input, for wrong values.
+/// Stores the quantities given in `table` in `material`. Errors: input, for wrong values.
 void read_material_keys(const TomlTable& table, Material& material);
 
 }  // namespace muslin

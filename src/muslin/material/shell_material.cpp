@@ -10,7 +10,8 @@ namespace {
 constexpr Range modulus{0, 1e12, false};
 constexpr Range damping{0, 1e6, false};
 
-/// Of an orthotropic plate whose twisting rigidity is the geometric mean of the two bending ones.
+/// Returns the bias rigidity of an orthotropic plate whose twisting rigidity is the geometric mean of the two
+/// bending ones.
 double bias_between(double warp, double weft) {
   const double sum = std::sqrt(warp) + std::sqrt(weft);
   return sum * sum / 4;

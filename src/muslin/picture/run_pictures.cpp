@@ -21,7 +21,7 @@ std::vector<Vec3> in_double(const std::vector<Vec3f>& points) {
   return result;
 }
 
-/// 1, 2 or 5 times a power of ten, at least `value`.
+/// Returns 1, 2 or 5 times a power of ten, at least `value`.
 double round_up(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(std::max(value, 1e-3))));
   for (double digit : {1.0, 2.0, 5.0})
@@ -50,7 +50,7 @@ struct RunPictures::Parts {
     }
     return is_closed(mesh) ? solid_look(colour) : fabric_look(colour);
   }
-  /// Where all bodies are shown, what is no lattice is shown as it is.
+  /// Returns the surface to show: if all bodies are shown, the skin for those without a lattice.
   SurfaceKind surface(int body) const {
     return options.body.empty() && !run.has_lattice(body) ? SurfaceKind::skin : options.surface;
   }
@@ -58,7 +58,7 @@ struct RunPictures::Parts {
     return in_double(run.points(body, surface(body), frame));
   }
 
-  /// The height of a plane that is a floor and stands still: it is drawn without an end.
+  /// Returns the height of a static plane that serves as floor, which is drawn unbounded.
   std::optional<double> floor_height(int body) const {
     if (!run.is_plane(body)) return std::nullopt;
     const Mesh& mesh = run.mesh(body, SurfaceKind::skin);
@@ -96,7 +96,7 @@ RunPictures::RunPictures(RunReader run, const PictureOptions& options, const Pro
     progress.at(static_cast<double>(frame) / frame_count(), "looking for the view");
     for (std::size_t b = 0; b < p.bodies.size(); ++b) {
       const std::vector<Vec3> x = p.points(p.bodies[b], frame);
-      // A plane has no end: what there is to see is on it.
+      // A plane is unbounded; the camera frames the objects on it.
       if (!p.run.is_plane(p.bodies[b]) || p.bodies.size() == 1) {
         fit.add(x);
         for (const Vec3& point : x) bounds.extend(point);

@@ -1,4 +1,4 @@
-// From a run directory to pictures: what surfaces look like, where the camera stands, which plots there are.
+// Makes pictures and plots from a run directory.
 #pragma once
 
 #include <memory>
@@ -26,10 +26,10 @@ struct PictureOptions {
   RenderOptions render = {.width = 960, .height = 540, .samples = 4};
 };
 
-/// Draws frames of one run, all from one place.
+/// Draws frames of one run, all from one camera position.
 class RunPictures {
  public:
-  /// Looks at all frames for where to stand. Errors: usage, for options out of range; file; interrupted.
+  /// Finds the camera position from all frames. Errors: usage, for options out of range; file; interrupted.
   RunPictures(RunReader run, const PictureOptions& options, const Progress& progress);
   ~RunPictures();
   int frame_count() const;
@@ -41,10 +41,10 @@ class RunPictures {
   std::unique_ptr<Parts> parts_;
 };
 
-/// The start of a scene, with a red ball wherever surfaces cross.
+/// Draws the start of a scene, with a red ball wherever surfaces cross.
 Image draw_start(const Model& model, const std::vector<Crossing>& crossings);
 
-/// energy.svg, energy.png, stretch.svg, stretch.png in the run directory.
+/// Writes energy.svg, energy.png, stretch.svg, stretch.png to the run directory.
 void write_run_plots(const RunReader& run);
 
 }  // namespace muslin

@@ -35,9 +35,9 @@ void for_each_coupling(std::span<const CouplingRun> runs, const Body& body) {
     for (int i = 0; i < run.length; ++i) body(run.a + i, run.b + i, run.kind, index++);
 }
 
-/// A layer of a sheet is a chain along its rows, of which each level has a vertex or two. Its rows are
-/// eliminated from both ends towards the middle, which leaves out no more than from one end, and side by side
-/// with those of other layers.
+/// A layer of a sheet is a chain along its rows, with one or two vertices per level. Its rows are eliminated
+/// from both ends towards the middle, which drops no more fill-in than from one end, in parallel with those
+/// of other layers.
 template <class Split>
 void gather_thin_layers(std::span<const CouplingRun> runs, int slabs, Split& split) {
   std::vector<std::vector<Pair>> inside(at(3 * slabs));  // couplings of each layer
@@ -117,7 +117,7 @@ CouplingPattern::CouplingPattern(std::span<const CouplingRun> runs, int vertex_c
     if (split.before(b, a)) std::swap(a, b);
     earlier.couplings[at(fill[at(b)]++)] = {a, 2 * kind + (a < b ? 1 : 0), index};
   });
-  // In the layers of a thin sheet, vertices with many couplings had better be apart from those with few; in
+  // In the layers of a thin sheet, vertices with many couplings are best separated from those with few; in
   // other shapes that breaks runs of neighbours.
   arrange(earlier, split, true);
   make_blocks(earlier, order);
@@ -138,7 +138,7 @@ CouplingPattern::Split CouplingPattern::split(std::span<const CouplingRun> runs)
     reach = std::max(reach, std::abs(run.b - run.a));
   }
   const int slabs = slab_count(vertex_count(), reach);
-  // Tasks 0 … slabs − 1 are the layers that go first, then come the slabs, then the layers that wait.
+  // Tasks 0 … slabs − 1 are the layers that go first, then the slabs, then the layers eliminated last.
   Split split;
   split.phase = {0, slabs, 2 * slabs, 3 * slabs};
   split.task.resize(position_.size());
@@ -203,7 +203,7 @@ void CouplingPattern::arrange(const EarlierEnds& earlier, const Split& split, bo
       std::sort(places.begin(), places.end());
       Task task;
       task.group_begin = static_cast<int>(groups_.size());
-      // A group takes what comes for as long as nothing in it is coupled to another of it.
+      // A group takes consecutive vertices as long as none of them are coupled.
       std::size_t base = 0, taken = lanes;
       for (const Place& place : places) {
         const int v = vertices[at(place.rank)];
@@ -222,7 +222,7 @@ void CouplingPattern::arrange(const EarlierEnds& earlier, const Split& split, bo
       }
       task.group_end = static_cast<int>(groups_.size());
       tasks_.push_back(task);
-      empty_group();  // reading past the ends of a task meets nothing that another one writes
+      empty_group();  // reads past the ends of a task then do not touch data another one writes
     }
   }
   phases_.push_back(static_cast<int>(tasks_.size()));

@@ -1,15 +1,16 @@
-// Which vertices of a body are coupled in pairs, in the order in which the inner solver eliminates them.
+// CouplingPattern stores the pairs of coupled vertices of a body, in the elimination order of the inner
+// solver.
 //
-// Vertices are cut into slabs, eliminated side by side: even slabs upwards, odd ones downwards, so that two
-// of them meet without a gap (a twisted factorisation). Where an odd slab meets the one below, a thin layer
-// waits until both are done; where an even slab begins above an odd one, a thin layer goes first. Inside each
-// of these tasks a vertex has a level, one more than the highest of those it is coupled to and that come
-// before it. Vertices of one level do not depend on each other: 16 of them make a group, one per vector lane.
+// Vertices are cut into slabs, eliminated in parallel: even slabs upwards, odd ones downwards, so that two of
+// them meet without a gap (a twisted factorisation). Where an odd slab meets the one below, a thin layer is
+// eliminated after both; where an even slab begins above an odd one, a thin layer is eliminated first. Within
+// each of these tasks the level of a vertex is one more than the highest level of its earlier coupled
+// vertices. Vertices of one level do not depend on each other: 16 of them make a group, one per vector lane.
 //
 // Positions number the vertices in this order, 16 for each group, some of them empty. In a lattice the
-// neighbours of the lanes of a group lie at consecutive positions, with a break now and then: a block of
-// couplings needs two base positions and no index per coupling. The order depends on the pattern alone, hence
-// the same bits for any thread count.
+// neighbours of the lanes of a group lie at consecutive positions, with few breaks: a block of couplings
+// needs two base positions and no index per coupling. The order depends on the pattern alone, hence the same
+// bits for any thread count.
 #pragma once
 
 #include <array>
@@ -38,7 +39,7 @@ class CouplingPattern {
     std::uint8_t kind = 0;
     std::uint16_t used = 0;  ///< bit l: lane l has a coupling
   };
-  /// The same couplings seen from their earlier ends: where bit l of used[i] is set, lane l of the group is
+  /// The same couplings from their earlier ends: where bit l of used[i] is set, lane l of the group is
   /// coupled to position l + position[i] by lane l + shift[i] of block[i].
   struct Link {
     std::array<int, 2> position{}, block{};
@@ -54,15 +55,15 @@ class CouplingPattern {
     int group_begin = 0, group_end = 0;
   };
 
-  /// `order`, where wanted, receives 16 numbers for each block: which coupling (counted through `runs`) a
-  /// lane has, −1 for none.
+  /// `order`, if not null, receives 16 numbers for each block: the coupling of each lane (counted through
+  /// `runs`), −1 for none.
   CouplingPattern(std::span<const CouplingRun> runs, int vertex_count,
                   std::vector<std::int64_t>* order = nullptr);
 
   int vertex_count() const { return static_cast<int>(position_.size()); }
   std::size_t position_count() const { return vertex_.size(); }
   std::size_t block_count() const { return blocks_.size(); }
-  /// −1 where a position is empty.
+  /// Returns −1 for an empty position.
   int vertex(std::size_t position) const { return vertex_[position]; }
   int position(std::size_t vertex) const { return position_[vertex]; }
   const std::vector<int>& vertices() const { return vertex_; }
@@ -86,7 +87,7 @@ class CouplingPattern {
     std::vector<std::int64_t> begin;
     std::vector<Coupling> couplings;
   };
-  /// Which vertices each task eliminates, in what order; of each vertex the task and its rank in there.
+  /// The vertices that each task eliminates, in order; by vertex its task and its rank there.
   struct Split {
     std::vector<std::vector<int>> members;
     std::vector<int> task, rank;
@@ -94,7 +95,7 @@ class CouplingPattern {
     bool before(int u, int v) const;
   };
   Split split(std::span<const CouplingRun> runs) const;
-  /// `by_count`: vertices of one level by whether they have many couplings, then by index.
+  /// `by_count`: sorts the vertices of one level by having many couplings, then by index.
   void arrange(const EarlierEnds& earlier, const Split& split, bool by_count);
   void make_blocks(const EarlierEnds& earlier, std::vector<std::int64_t>* order);
   void make_links();

@@ -57,7 +57,8 @@ MUSLIN_VECTOR_CODE void store_blocks(std::uint32_t* __restrict c, float* __restr
   }
 }
 
-/// The eigenvalues are |s|² + t along s and t across: where t < 0, s shrinks by what t takes from the first.
+/// The eigenvalues are |s|² + t along s and t across: where t < 0, t becomes 0 and s shrinks so that the
+/// first is unchanged (but ≥ 0).
 MUSLIN_VECTOR_CODE void project_blocks(std::size_t count, float* __restrict sx, float* __restrict sy,
                                        float* __restrict sz, float* __restrict t) {
   for (std::size_t i = 0; i < count * lanes; ++i) {

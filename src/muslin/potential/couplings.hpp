@@ -1,10 +1,10 @@
-// Pairwise couplings of a Hessian, stored in 8 bytes each: vertices a and b share the block
+// Couplings stores the pairwise couplings of a Hessian in 8 bytes each: vertices a and b share the block
 //
 //   B = q s sᵀ + t I,   ∂²W/∂x_a² ∋ B,  ∂²W/∂x_a∂x_b ∋ −B,
 //
-// as every central force has them. s is three 16-bit integers, their unit √q common to a block of 16
-// couplings; t is a float cut to its upper 16 bits. The errors, 3e-5 of the largest s of the block and 4e-3
-// of t, are far below what the inner solver is asked for.
+// as for every central force. s is three 16-bit integers, their unit √q common to a block of 16 couplings; t
+// is a float cut to its upper 16 bits. The errors, 3e-5 of the largest s of the block and 4e-3 of t, are far
+// below the tolerance of the inner solver.
 #pragma once
 
 #include <cstddef>
@@ -39,12 +39,12 @@ class Couplings {
   void project();
 
   /// Two words for each lane of a block, 16 first ones and then 16 second ones: the integers sx and sy in the
-  /// lower and the upper half, then sz and t. Reading up to 15 words before or behind is allowed.
+  /// lower and the upper half, then sz and t. Reading up to 15 words before or after is allowed.
   const std::uint32_t* coefficients() const { return coefficients_.data() + room; }
   /// √q by block, of the integers in the upper halves: 2⁻¹⁶ of that of sx, sy and sz.
   const float* units() const { return units_.data(); }
 
-  /// To be written by whoever knows how: different blocks by different threads.
+  /// Writable words of a block; different blocks may be written by different threads.
   std::uint32_t* words(std::size_t block) { return coefficients_.data() + room + 2 * lanes * block; }
   float* units(std::size_t block) { return units_.data() + block; }
 

@@ -1,4 +1,4 @@
-// Vectors of the inner solver: float, one array per coordinate.
+// FloatVectors are the vectors of the inner solver: float, one array per coordinate.
 #pragma once
 
 #include <cstddef>
@@ -62,7 +62,7 @@ class FloatVectors {
  public:
   void resize(std::size_t count) {
     size_ = count;
-    // An odd number of cache lines apart, lest the three arrays compete for the same cache sets.
+    // An odd number of cache lines apart, so that the three arrays do not compete for the same cache sets.
     stride_ = (count + 1023) / 1024 * 1024 + 336;
     buffer_.resize(3 * stride_);
   }

@@ -69,8 +69,8 @@ RelativeStiffness& Linearization::relative_stiffness(std::size_t first, std::siz
   return relative;
 }
 
-/// In pieces that end where block matrices do: whoever works with groups of vertices in one unit of
-/// measurement would lose cloth beside a rigid body, which is a million times as stiff.
+/// Adds empty couplings in pieces that end where block matrices do: packing groups of vertices with a common
+/// unit would lose cloth beside a rigid body, which is a million times as stiff.
 void Linearization::cover_gap(std::size_t begin, std::size_t end) {
   for (const SymmetricMatrix* matrix : matrices_) {
     for (const std::size_t cut : {matrix->first(), matrix->first() + matrix->pattern().vertex_count()}) {
@@ -104,7 +104,7 @@ void Linearization::finish() {
   }
   cover_gap(covered, size());
   std::sort(sets_.begin(), sets_.end(), by_vertex);
-  // Sets of other bodies than before are of no use any more.
+  // Drops sets of bodies that no longer occur.
   std::erase_if(storage_,
                 [&](const auto& c) { return std::find(sets_.begin(), sets_.end(), c.get()) == sets_.end(); });
 

@@ -1,4 +1,4 @@
-// The Hessian of an incremental potential at one x, as the inner solver works with it: in float.
+// Linearization is the Hessian of an incremental potential at one x in float, for the inner solver.
 //
 //   H = diag(identity) + couplings + K,   K = block matrices + the loose rest,
 //
@@ -25,52 +25,53 @@ class Potential;
 
 class Linearization {
  public:
-  /// Starts anew with H = M; potentials are added times `scale`.
+  /// Resets to H = M; potentials are added times `scale`.
   void reset(std::span<const double> masses, std::span<const std::uint8_t> fixed, double scale);
 
   std::size_t size() const { return identity_.size(); }
   double scale() const { return scale_; }
   std::span<const double> masses() const { return masses_; }
 
-  /// The couplings of this pattern on vertices first, first + 1, …; zero when first asked for. A vertex has
-  /// couplings of one pattern only.
+  /// Returns the couplings of this pattern on vertices first, first + 1, …; zero at the first request. A
+  /// vertex has couplings of one pattern only.
   Couplings& couplings(const std::shared_ptr<const CouplingPattern>& pattern, std::size_t first);
-  /// The blocks of this pattern on vertices first, first + 1, …; zero when first asked for. What is added
-  /// must be symmetric and, with the masses, positive definite.
+  /// Returns the blocks of this pattern on vertices first, first + 1, …; zero at the first request. Added
+  /// blocks must be symmetric and, with the masses, positive definite.
   SymmetricMatrix& matrix(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first);
-  /// A relative stiffness between `count` vertices first, first + 1, …, without terms yet; scaled already.
+  /// Adds an empty relative stiffness between `count` vertices first, first + 1, …; terms are already scaled.
   RelativeStiffness& relative_stiffness(std::size_t first, std::size_t count);
-  /// H += value on vertex v; scaled already.
+  /// H += value on vertex v; already scaled.
   void add_identity(std::size_t v, double value) { identity_.data()[v] += static_cast<float>(value); }
-  /// A potential of vertices first, first + 1, … at x, kept by reference.
+  /// Adds a potential of vertices first, first + 1, … at x, kept by reference.
   void add_general(const Potential& potential, std::size_t first, ConstVectors x);
 
-  /// Called when all potentials are in.
+  /// Call when all potentials have been added.
   void finish();
 
   /// Leaves out the negative eigenvalues of the couplings.
   void project();
 
-  /// Memory for whoever computes couplings and, later, for whoever solves with them: until the next call.
+  /// Returns scratch memory for computing couplings and, later, for the solver; valid until the next call.
   std::span<float> workspace(std::size_t count) {
     if (workspace_.size() < count) workspace_.resize(count);
     return {workspace_.data(), count};
   }
 
-  /// Couplings of all vertices in ascending order, empty ones for vertices that have none.
+  /// Returns the couplings of all vertices in ascending order, empty ones for vertices without any.
   std::span<const Couplings* const> sets() const { return sets_; }
   std::span<const SymmetricMatrix* const> matrices() const { return matrices_; }
   bool has_couplings() const;
   const float* identity() const { return identity_.data(); }
   const std::uint8_t* fixed() const { return fixed_.data(); }
 
-  /// Whether K is not zero.
+  /// True if K is not zero.
   bool has_rest() const { return !matrices_.empty() || !generals_.empty() || relative_count_ > 0; }
   /// Diagonal blocks of K, with the identity positive definite: xx, xy, xz of `upper` and yy, yz, zz of
-  /// `lower`, #V by 3. What relative stiffnesses add is scaled down where masses would vanish beside it.
+  /// `lower`, #V by 3. Relative stiffnesses are scaled down where masses would be lost to rounding.
   const FloatVectors& rest_upper() const { return upper_; }
   const FloatVectors& rest_lower() const { return lower_; }
-  /// The largest trace of a diagonal block of relative stiffnesses over the vertex' part of the identity.
+  /// Returns the largest trace of a diagonal block of relative stiffnesses over the vertex's part of the
+  /// identity.
   double stiffest_relative() const { return stiffest_relative_; }
   /// y += K p, #V by 3 and a zero each; returns pᵀK p.
   double add_rest_product(const Float4* p, Float4* y);

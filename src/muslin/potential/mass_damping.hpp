@@ -1,4 +1,4 @@
-// Rayleigh's mass-proportional damping.
+// MassDamping is Rayleigh's mass-proportional damping.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Everything that pushes or pulls is a potential: the solver knows nothing else. One implicit step from
-// x_n minimises the incremental potential
+// All forces are potentials: the solver handles nothing else. One implicit step from x_n minimises the
+// incremental potential
 //
 //   E(x) = ½ (x − x̃)ᵀ M (x − x̃) + dt² Σᵢ Wᵢ(x),
 //
@@ -36,12 +36,12 @@ class Potential {
   /// y += ∂²W/∂x² p, the true (possibly indefinite) Hessian at x.
   virtual void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const = 0;
 
-  /// blocks[v] += the diagonal 3×3 block of a positive semidefinite approximation of the Hessian: what the
-  /// preconditioner is built from, N/m.
+  /// blocks[v] += the diagonal 3×3 block of a positive semidefinite approximation of the Hessian, for the
+  /// preconditioner, N/m.
   virtual void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const = 0;
 
-  /// Adds the Hessian at x to `into`, W being a potential of its vertices first, first + 1, …. x stays valid
-  /// for as long as `into` is used. A potential that does not say otherwise is added by its product.
+  /// Adds the Hessian at x to `into`, W being a potential of its vertices first, first + 1, …. x must stay
+  /// valid while `into` is used. By default a potential is added by its product.
   virtual void linearize(ConstVectors x, Linearization& into, std::size_t first) const {
     into.add_general(*this, first, x);
   }
@@ -55,7 +55,7 @@ class Potential {
 };
 
 /// A load that depends on time, velocity or history (gravity, wind, damping): at the start of a step it
-/// yields the potential which that step minimises. Null means: nothing acts during this step.
+/// yields the potential which that step minimises. Null: nothing acts during this step.
 class Load {
  public:
   virtual ~Load() = default;

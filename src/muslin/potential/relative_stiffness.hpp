@@ -1,9 +1,8 @@
-// Stiffness against relative motion, in float: what contacts add to the Hessian as the inner solver works
-// with it.
+// RelativeStiffness resists relative motion, in float: it adds contacts to the Hessian of the inner solver.
 //
 //   K = Σ Aᵀ (a n nᵀ + b (I − n nᵀ)) A,   A p = Σ wᵢ pᵢ
 //
-// over terms that change from one linearisation to the next; few of the vertices are part of any.
+// over terms that change from one linearisation to the next and involve few of the vertices.
 #pragma once
 
 #include <cstddef>
@@ -22,19 +21,19 @@ class RelativeStiffness {
     int vertex = 0;
     float weight = 0;
   };
-  /// Starts anew without terms, for vertices first … first + count − 1.
+  /// Resets to no terms, for vertices first … first + count − 1.
   void reset(std::size_t first, std::size_t count);
   /// Adds a term: `normal` of length 1, along = a ≥ 0 and across = b ≥ 0 [kg], each vertex once.
   void add(const Vec3& normal, double along, double across, std::span<const Weight> weights);
-  /// Called when all terms are in.
+  /// Call when all terms have been added.
   void finish();
 
   std::size_t first() const { return first_; }
   /// y += K p, #V by 3 and a zero each, starting at the body; returns pᵀK p.
   double add_product(const Float4* p, Float4* y);
   /// Adds the diagonal blocks: xx, xy, xz, yy, yz, zz are the components of `upper` and `lower`. A block whose
-  /// trace is more than `most` times the vertex' `identity` is scaled down to that. Returns the largest ratio
-  /// there was of a vertex that is not `fixed`.
+  /// trace is more than `most` times the vertex' `identity` is scaled down to that. Returns the largest such
+  /// ratio of a vertex that is not `fixed`.
   double add_diagonal(const float* identity, const std::uint8_t* fixed, float most, Floats upper,
                       Floats lower) const;
 

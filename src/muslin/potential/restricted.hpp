@@ -1,4 +1,4 @@
-// A potential or load of one body, applied to that body's range of the vertices of all bodies.
+// Restricts a potential or load to the vertices of one body within those of all bodies.
 #pragma once
 
 #include <cstddef>

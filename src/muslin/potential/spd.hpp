@@ -1,4 +1,4 @@
-// The positive semidefinite part of small symmetric matrices: what preconditioners are built from.
+// Computes the positive semidefinite part of small symmetric matrices, for preconditioners.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,8 +6,8 @@
 
 namespace muslin {
 
-/// The symmetric positive semidefinite matrix nearest to the symmetric `a` in the Frobenius norm: negative
-/// eigenvalues become zero (Higham 1988). `a` must be finite; only its lower triangle is read.
+/// Returns the symmetric positive semidefinite matrix nearest to the symmetric `a` in the Frobenius norm:
+/// negative eigenvalues become zero (Higham 1988). `a` must be finite; only its lower triangle is read.
 template <int N>
 Eigen::Matrix<double, N, N> positive_semidefinite_part(const Eigen::Matrix<double, N, N>& a) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(a);

@@ -1,4 +1,4 @@
-// What changes during a run, and what a step knows before it is solved.
+// State is the mechanical state of a run; StepContext is the known data of a step before it is solved.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// How all bodies are and move, shape #V by 3 each. Saved and restored bit for bit.
+/// Positions and velocities of all bodies, shape #V by 3 each. Saved and restored bit for bit.
 struct State {
   std::vector<Vec3> positions;            ///< [m]
   std::vector<Vec3> velocities;           ///< [m/s]
@@ -33,8 +33,8 @@ struct State {
 /// A step from time_begin to time_end. Integrators differ only in `anchor` and `dt`: velocities at the end
 /// of the step are (x − anchor) / dt. For implicit Euler the anchor is the position at the beginning and dt
 /// the length of the step; for BDF2 the anchor is a combination of the two last positions and dt two thirds
-/// of the step (equal steps). Symplectic Euler reads forces at the beginning of the step; its anchor is such
-/// that (x − anchor) / dt is there the velocity at the beginning.
+/// of the step (equal steps). Symplectic Euler reads forces at the beginning of the step; its anchor makes (x
+/// − anchor) / dt the velocity at the beginning.
 struct StepContext {
   double time_begin = 0;                  ///< [s]
   double time_end = 0;                    ///< [s]
@@ -42,7 +42,7 @@ struct StepContext {
   double velocity_time = 0;               ///< when (x − anchor) / dt is the velocity to second order [s]
   double length = 0;                      ///< of the step, time_end − time_begin without its rounding [s]
   std::vector<Vec3> anchor;               ///< #V by 3 [m]
-  std::vector<Vec3> inertial_prediction;  ///< #V by 3, where the vertices would end without forces [m]
+  std::vector<Vec3> inertial_prediction;  ///< #V by 3, end positions without forces [m]
   std::vector<std::uint8_t> turned;       ///< #V, 1 where anchor and prediction are those of a turning rigid
                                           ///< body; empty: nowhere
   ConstVectors positions;                 ///< #V by 3, at time_begin [m]

@@ -1,13 +1,13 @@
-// The names under which what changes during a run is saved and restored. A struct that is part of the state
-// declares each of its members once, in a static function
+// State arrays are the named parts of the state of a run, under which it is saved and restored. A struct that
+// is part of the state declares each of its members once, in a static function
 //
 //   template <class Self, class Arrays>
 //   static void name_arrays(Self& self, Arrays& arrays) {
 //     arrays("holds.anchors", self.anchors);
 //   }
 //
-// and whoever writes, reads or compares states passes an `Arrays` that is called with every name and member:
-// a std::vector, or a single value, which counts as an array of one.
+// Code that writes, reads or compares states passes an `Arrays` that is called with every name and member: a
+// std::vector, or a single value, which counts as an array of one.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@
 
 namespace muslin {
 
-/// How the elements of a named array lie in memory, in a word that is saved beside the name. Whoever keeps
-/// elements of another type specialises it; they are copied byte by byte and have no padding.
+/// Memory layout of the elements of a named array, as a word that is saved with the name. Specialise it for
+/// other element types; they are copied byte by byte and have no padding.
 template <class Element>
 struct ArrayElement;
 

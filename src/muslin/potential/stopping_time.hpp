@@ -1,11 +1,11 @@
-// The time that stands in for the step where something must not depend on the step: what rests under contact
-// stays where it is when steps become longer or shorter.
+// stopping_time replaces the step where a quantity must not depend on it: bodies at rest in contact do not
+// move when the step changes.
 #pragma once
 
 namespace muslin {
 
-/// Contact stops the mass of a rigid body within it, rigid bodies are as stiff as steps of it ask for, and
-/// under contact a step may be wrong by a share of what loads move a body by in it [s].
+/// Time in which contact stops the mass of a rigid body, step for which rigid bodies are stiff enough, and
+/// time whose displacement under loads sets the error tolerance under contact [s].
 inline constexpr double stopping_time = 1.0 / 240;
 
 }  // namespace muslin

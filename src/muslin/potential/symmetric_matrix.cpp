@@ -8,7 +8,7 @@
 #include "muslin/core/vector_code.hpp"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wpsabi"  // how vectors are returned does not matter where all is inlined
+#pragma GCC diagnostic ignored "-Wpsabi"  // the ABI of vectors is irrelevant in inlined code
 #endif
 
 namespace muslin {
@@ -34,7 +34,8 @@ MUSLIN_VECTOR_CODE double add_rows(const SymmetricPattern& pattern, const Float4
   const SymmetricPattern::Mirrored* const mirrored = pattern.mirrored().data();
   double sum = 0;
   for (std::size_t v = begin; v < end; ++v) {
-    // Of the first two columns side by side and of the third; of blocks, and of transposed ones by component.
+    // Sums of the first two columns together and of the third; of blocks, and of transposed ones by
+    // component.
     Float8 sum01 = {}, mirrored01 = {};
     Float4 sum2 = {}, mirrored2 = {};
     for (int k = first[v]; k < first[v + 1]; ++k) {

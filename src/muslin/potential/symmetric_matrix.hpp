@@ -1,7 +1,7 @@
-// A symmetric matrix of 3×3 blocks between the vertices of a mesh, in float: the Hessian of a shell as the
-// inner solver works with it. Only the diagonal and what is right of it is stored; a product reads a block
-// twice, in its own row and, transposed, in that of its column. So every row is summed on its own, in the
-// same order for any thread count, and from memory comes half of what whole rows would take.
+// SymmetricMatrix has 3×3 blocks between the vertices of a mesh, in float: the Hessian of a shell for the
+// inner solver. Only the upper triangle with the diagonal is stored; a product reads a block twice, in its
+// own row and, transposed, in that of its column. Every row is therefore summed independently, in the same
+// order for any thread count, with half the memory traffic of full rows.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace muslin {
 
-/// Which blocks there are: those of every pair of vertices of an element, and the diagonal.
+/// The blocks of the matrix: those of every pair of vertices of an element, and the diagonal.
 class SymmetricPattern {
  public:
   /// `pairs`: first and second vertex, in any order and number.
@@ -27,14 +27,14 @@ class SymmetricPattern {
   /// ascending.
   const std::vector<int>& first() const { return first_; }
   const std::vector<int>& columns() const { return columns_; }
-  /// The block of a row and a column not before it, which must be there.
+  /// Returns the block of a row and a column not before it, which must exist.
   int find(int row, int column) const;
 
   /// A block of an earlier row, whose column is this one.
   struct Mirrored {
     int block, row;
   };
-  /// In row v stand the transposes of mirrored()[first_mirrored()[v]] … [first_mirrored()[v+1] − 1].
+  /// Row v has the transposes of mirrored()[first_mirrored()[v]] … [first_mirrored()[v+1] − 1].
   const std::vector<int>& first_mirrored() const { return first_mirrored_; }
   const std::vector<Mirrored>& mirrored() const { return mirrored_; }
 
@@ -50,14 +50,14 @@ class SymmetricPattern {
 
 class SymmetricMatrix {
  public:
-  /// A matrix of this pattern for vertices first, first + 1, …; all zero.
+  /// Resets to a zero matrix of this pattern for vertices first, first + 1, ….
   void reset(std::shared_ptr<const SymmetricPattern> pattern, std::size_t first);
 
   bool is_of(const std::shared_ptr<const SymmetricPattern>& pattern) const { return pattern_ == pattern; }
   const SymmetricPattern& pattern() const { return *pattern_; }
   const std::shared_ptr<const SymmetricPattern>& shared_pattern() const { return pattern_; }
   std::size_t first() const { return first_; }
-  /// The three columns of a block, of four floats each, the fourth 0.
+  /// Returns the three columns of a block, of four floats each, the fourth 0.
   Float4* block(int index) { return columns_.data() + 3 * static_cast<std::size_t>(index); }
   const Float4* block(int index) const { return columns_.data() + 3 * static_cast<std::size_t>(index); }
 

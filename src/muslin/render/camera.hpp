@@ -1,4 +1,4 @@
-// The camera, and how far it must stand to see everything.
+// Defines the camera and fits its distance to see everything.
 #pragma once
 
 #include "muslin/core/vectors.hpp"
@@ -19,24 +19,24 @@ struct Camera {
   Vec3 forward = -Vec3::UnitZ();
   double half_height = 0.3;    ///< tangent of half the field of view
   double half_width = 0.4;     ///< half_height × aspect
-  Vec3 target = Vec3::Zero();  ///< middle of what is to be seen
-  double radius = 1;           ///< [m] of a ball around target that holds it
+  Vec3 target = Vec3::Zero();  ///< middle of the visible objects
+  double radius = 1;           ///< [m] of an enclosing ball around target
 
-  /// Pixels (x right, y down) at which a point appears in a picture of this size; the point must lie in
-  /// front.
+  /// Returns the pixel (x right, y down) at which a point appears in a picture of this size; the point must
+  /// lie in front.
   Vec2 project(const Vec3& point, int width, int height) const;
 };
 
-/// Finds the one camera that sees the points of all frames, so that it need not move. The nearest position
-/// for the given direction is exact: each of the four sides of the view touches a point. Two pairs of
-/// numbers are kept, not the points.
+/// Finds one static camera that sees the points of all frames. The nearest position for the given direction
+/// is exact: each of the four sides of the view touches a point. Two pairs of numbers are kept, not the
+/// points.
 class CameraFit {
  public:
   /// aspect = width / height. Throws Error(usage) on options outside their ranges.
   CameraFit(const CameraOptions& options, double aspect);
-  /// Points that are not finite are passed over.
+  /// Adds points; those that are not finite are ignored.
   void add(ConstVectors points);
-  /// A camera with a margin of 6 % on each side. Without any point, the unit cube is framed.
+  /// Returns a camera with a margin of 6 % on each side. Without any point, the unit cube is framed.
   Camera camera() const;
 
  private:

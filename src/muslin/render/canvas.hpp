@@ -1,4 +1,4 @@
-// Antialiased drawing into a picture: lines, rectangles, text.
+// Canvas draws antialiased lines, rectangles and text into a picture.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace muslin {
 
-/// Ink: an sRGB colour 0…1 and how much it covers.
+/// Ink: an sRGB colour 0…1 and its opacity.
 struct Ink {
   Vec3 colour = Vec3::Zero();
   double opacity = 1;

@@ -34,7 +34,7 @@ int wait_for(pid_t pid) {
 }  // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std::string& remedy) {
-  // A socket instead of a pipe: sending to a program that has gone is then an error, not a signal.
+  // A socket instead of a pipe: sending to a program that has exited is then an error, not a signal.
   std::array<int, 2> ends = {-1, -1};
   errors_ = memfd_create("errors", MFD_CLOEXEC);
   int code = errors_ < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0 ? errno : 0;

@@ -1,4 +1,4 @@
-// Another program that reads bytes from us, run without a shell.
+// ChildProcess runs another program, without a shell, and sends it bytes.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace muslin {
 class ChildProcess {
  public:
   /// arguments[0] is the program, looked up in PATH. It runs in a process group of its own, so that Ctrl-C
-  /// reaches only us. Throws Error(file) with `remedy` if it cannot be started.
+  /// reaches only the parent. Throws Error(file) with `remedy` if it cannot be started.
   ChildProcess(const std::vector<std::string>& arguments, const std::string& remedy);
   /// Kills the program if it still runs.
   ~ChildProcess();
@@ -24,9 +24,9 @@ class ChildProcess {
   bool send(std::span<const std::uint8_t> bytes);
   /// Ends its input and waits for it; true if it exited with 0.
   bool wait();
-  /// Ends it at once, if it still runs.
+  /// Kills the program if it still runs.
   void kill();
-  /// What it has written to its standard error so far, without line breaks at the end.
+  /// Returns its standard error so far, without trailing line breaks.
   std::string errors() const;
 
  private:

@@ -1,4 +1,4 @@
-// Colour: sRGB and linear light, the tone curve, and maps from a number to a colour.
+// Converts between sRGB and linear light, applies the tone curve, and maps numbers to colours.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ Light linear_of_srgb(const Vec3& srgb);
 Vec3 srgb_of_linear(const Light& light);
 
 /// Linear up to 0.6, then a shoulder that reaches 1 only in the limit, so that highlights never clip and
-/// the colours below them stay what the user chose.
+/// the colours below them stay as chosen by the user.
 Light tone_curve(const Light& radiance);
-/// The radiance that tone_curve takes to `shown` (each below 1).
+/// Returns the radiance that tone_curve maps to `shown` (each below 1).
 Light inverse_tone_curve(const Light& shown);
 
 std::array<std::uint8_t, 3> bytes_of_srgb(const Vec3& srgb);
@@ -31,10 +31,11 @@ enum class ColourMap {
   diverging,   ///< blue, light grey, red: lightness falls evenly to both sides of the middle
 };
 
-/// sRGB of t in 0…1 (clamped). Made of straight lines in OKLab (Ottosson 2020), where equal steps look equal.
+/// Returns the sRGB of t in 0…1 (clamped). Made of straight lines in OKLab (Ottosson 2020), where equal steps
+/// look equal.
 Vec3 map_colour(ColourMap map, double t);
 
-/// How per-vertex numbers are shown, and what the legend says.
+/// Colour scale of per-vertex numbers, with the text of the legend.
 struct ColourScale {
   double low = 0;
   double high = 1;

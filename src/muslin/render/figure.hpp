@@ -1,4 +1,4 @@
-// A drawing as a list of lines, boxes and texts, which is then put out as SVG or as pixels.
+// Figure is a drawing as a list of lines, boxes and texts, output as SVG or pixels.
 #pragma once
 
 #include <string>
@@ -38,11 +38,11 @@ struct Figure {
   std::vector<std::variant<FigureLine, FigureBox, FigureText>> items;
 };
 
-/// A document of its own, text escaped, control characters left out.
+/// Returns a complete SVG document, text escaped, control characters left out.
 std::string svg(const Figure& figure);
 Image raster(const Figure& figure, double pixels_per_point);
 
-/// The pieces cut into dashes of this length with gaps as long.
+/// Returns the pieces cut into dashes of this length with gaps as long.
 std::vector<std::vector<Vec2>> dashed(const std::vector<std::vector<Vec2>>& pieces, double length);
 
 }  // namespace muslin

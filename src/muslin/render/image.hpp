@@ -1,4 +1,4 @@
-// Pictures of 8-bit sRGB colour and PNG files.
+// Image is a picture in 8-bit sRGB; write_png saves it.
 #pragma once
 
 #include <array>

@@ -31,11 +31,11 @@ std::vector<std::string> command(const fs::path& part, int width, int height, co
                 "give a number from 0 (lossless) to 51");
   // A fixed number of threads, since x264's choice of bits depends on it.
   return {options.program, "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-          // in: bare pictures from standard input
+          // input: raw pictures from standard input
           "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size",
           fmt::format("{}x{}", even(width), even(height)), "-framerate",
           fmt::format("{:.6g}", options.frame_rate), "-i", "pipe:0",
-          // out: what every player and browser shows, with its colours named
+          // output: playable everywhere, with colour tags
           "-vf", "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-preset", "medium", "-crf",
           std::to_string(options.quality), "-threads", "4", "-pix_fmt", "yuv420p", "-color_primaries",
           "bt709", "-color_trc", "bt709", "-colorspace", "bt709", "-color_range", "tv", "-fflags",
@@ -69,7 +69,7 @@ struct Movie::Process {
                "install it (apt install ffmpeg), or write the frames as PNG files by giving a folder") {}
   ~Process() {
     if (finished) return;
-    ffmpeg.kill();  // first, or it could write the file again
+    ffmpeg.kill();  // first, so that it cannot write the file again
     std::error_code ignored;
     fs::remove(part, ignored);
   }

@@ -1,4 +1,4 @@
-// Movies by ffmpeg, which runs as a program of its own and is never linked.
+// Movie writes movies with ffmpeg, which runs as a separate program and is not linked.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +28,7 @@ class Movie {
   Movie(const Movie&) = delete;
   Movie& operator=(const Movie&) = delete;
 
-  /// Throws Error(file) with what ffmpeg said if it stopped, Error(usage) on a picture of another size.
+  /// Throws Error(file) with ffmpeg's message if it stopped, Error(usage) on a picture of another size.
   void add(const Image& image);
   /// Waits for ffmpeg and gives the file its name. Throws as add; without any frame, Error(usage).
   void finish();

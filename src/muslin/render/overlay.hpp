@@ -1,4 +1,4 @@
-// What is written over a rendered frame.
+// Draws the label and the legend over a rendered frame.
 #pragma once
 
 #include <string_view>
@@ -8,10 +8,10 @@
 
 namespace muslin {
 
-/// The frame's label, bottom left.
+/// Draws the frame's label, bottom left.
 void draw_label(Image& image, std::string_view label);
 
-/// A bar of the scale's colours with round numbers beside it and its label above, at the right.
+/// Draws a bar of the scale's colours with round numbers beside it and its label above, at the right.
 void draw_legend(Image& image, const ColourScale& scale);
 
 }  // namespace muslin

@@ -16,7 +16,7 @@
 namespace muslin {
 namespace {
 
-// Okabe and Ito's colours (Color Universal Design, 2008), the yellow left out: it is lost on white.
+// Okabe and Ito's colours (Color Universal Design, 2008), without yellow, which is invisible on white.
 const std::array<Vec3, 7> palette = {Vec3(0.00, 0.45, 0.70), Vec3(0.84, 0.37, 0.00), Vec3(0.00, 0.62, 0.45),
                                      Vec3(0.80, 0.47, 0.65), Vec3(0.90, 0.62, 0.00), Vec3(0.20, 0.20, 0.20),
                                      Vec3(0.34, 0.71, 0.91)};
@@ -36,7 +36,7 @@ struct Range {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  /// Something to draw on: never empty, never without extent.
+  /// Returns a valid range: never empty or without extent.
   void settle() {
     if (!(low <= high)) low = 0, high = 1;
     if (high - low <= 1e-12 * std::max(std::abs(low), std::abs(high))) {
@@ -60,7 +60,7 @@ void check(const Plot& plot) {
                 "give sides from 200 to 8000 points");
 }
 
-/// Rows of names with a piece of their line, from the left; returns the height used.
+/// Draws rows of names with a piece of their line, from the left; returns the height used.
 double add_legend(Figure& figure, const Plot& plot, double left, double right, double top) {
   double x = left;
   double y = top;

@@ -1,4 +1,4 @@
-// Plots of numbers over time, as SVG and as PNG, from one layout.
+// Plots numbers over time, as SVG and as PNG, from one layout.
 #pragma once
 
 #include <filesystem>
@@ -28,21 +28,22 @@ struct Plot {
   int height = 480;
 };
 
-/// Kinetic, elastic and potential energy, work of the outer forces, dissipated energy [J], and their
+/// Plots kinetic, elastic and potential energy, work of the external forces, dissipated energy [J], and their
 /// balance. Energies count from the first row; the balance, kinetic + elastic + potential + dissipated −
 /// work, would be 0 without numerical error. A prefix (mJ, kJ, MJ) is chosen to suit.
 Plot energy_plot(std::span<const double> time, std::span<const double> kinetic,
                  std::span<const double> elastic, std::span<const double> potential,
                  std::span<const double> work, std::span<const double> dissipated);
 
-/// Greatest stretch over time [s], given as length / rest length: 1.05 shows as 5 %.
+/// Plots the largest stretch over time [s], given as length / rest length: 1.05 shows as 5 %.
 Plot stretch_plot(std::span<const double> time, std::span<const double> ratio);
 
 /// Each throws Error(usage) where a series is not as long as x or the size is out of 200…8000 points.
 std::string plot_svg(const Plot& plot);
 Image plot_image(const Plot& plot, double pixels_per_point = 2);
 
-/// Writes .svg or .png, by the suffix. Throws Error(usage) on another suffix, Error(file) on trouble.
+/// Writes .svg or .png, by the suffix. Throws Error(usage) on another suffix, Error(file) if it cannot be
+/// written.
 void write_plot(const std::filesystem::path& path, const Plot& plot);
 
 }  // namespace muslin

@@ -34,7 +34,7 @@ float smooth_step(float low, float high, float x) {
   return t * t * (3 - 2 * t);
 }
 
-/// What a camera ray met, ready to be lit. Normals face the eye.
+/// The hit of a camera ray, ready for shading. Normals face the eye.
 struct Hit {
   Vec3f position;         // on the triangle
   Vec3f smooth_position;  // on the curved surface the normals suggest: shadows fall without facets
@@ -66,7 +66,7 @@ struct Raytracer::Parts {
   Hit surface_hit(const RTCRayHit& ray, const Vec3f& direction) const;
   Light lit(const Hit& hit, const Vec3f& to_eye, std::uint32_t sample) const;
   Light sky_light(const Hit& hit, std::uint32_t sample) const;
-  /// The share of the sun's disc seen from a point, by four rays.
+  /// Returns the share of the sun's disc visible from a point, by four rays.
   float visible_sun(const Vec3f& origin, std::uint32_t sample) const;
   Light background(float y) const;
 
@@ -107,7 +107,7 @@ Raytracer::Parts::Parts(SceneView given_scene, const Camera& given_camera, const
     materials.emplace_back(surface.look);
     meshes.emplace_back(surface);
   }
-  // All that Embree sees is in float about the target of the camera, where the scene is.
+  // Embree's data is in float about the target of the camera, where the scene is.
   eye = (camera.position - camera.target).cast<float>();
   right = camera.right.cast<float>();
   up = camera.up.cast<float>();
@@ -257,12 +257,12 @@ Hit Raytracer::Parts::surface_hit(const RTCRayHit& ray, const Vec3f& direction) 
   Vec3f normal = Vec3f::Zero();
   for (std::size_t i = 0; i < 3; ++i) normal += weights[i] * normals[i];
   const bool from_behind = geometric.dot(direction) > 0;
-  if (normal.dot(geometric) < 0) normal = -normal;  // triangles that are wound against their neighbours
+  if (normal.dot(geometric) < 0) normal = -normal;  // triangles wound against their neighbours
   if (from_behind) {
     geometric = -geometric;
     normal = -normal;
   }
-  // Normals that the eye could not see are turned just into view.
+  // Normals facing away from the eye are turned just into view.
   const float away = normal.dot(direction);
   if (away > 0) normal -= 1.001f * away * direction;
   hit.geometric_normal = geometric;
@@ -438,7 +438,7 @@ Image Raytracer::render(const FrameView& frame, const Progress& progress) {
             sampling::hilbert(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)) * samples;
         Light sum = Light::Zero();
         for (std::uint32_t sample = 0; sample < samples; ++sample) {
-          // Tone first, average second: one bright sample must not spoil a smooth edge.
+          // Tone-maps before averaging, so that one bright sample does not spoil a smooth edge.
           sum += tone_curve(parts.trace(x, y, first + sample));
         }
         const auto bytes = bytes_of_srgb(srgb_of_linear(sum / static_cast<float>(options.samples)));

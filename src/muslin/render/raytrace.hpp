@@ -1,5 +1,6 @@
-// A ray-traced preview on the CPU: soft sun, sky light with occlusion, cloth seen from both sides, contact
-// shadows on a ground that fades into the background. Same picture, bit for bit, for any thread count.
+// Raytracer renders a preview on the CPU: soft sun, sky light with occlusion, cloth seen from both sides,
+// contact shadows on a ground that fades into the background. Same picture, bit for bit, for any thread
+// count.
 #pragma once
 
 #include <memory>
@@ -26,8 +27,8 @@ class Raytracer {
   Raytracer(const Raytracer&) = delete;
   Raytracer& operator=(const Raytracer&) = delete;
 
-  /// One frame, with label and legend. Throws Error(input) where a position or value is not finite.
-  /// Not for two threads at once: the frame's vertices are kept inside.
+  /// Renders one frame, with label and legend. Throws Error(input) where a position or value is not finite.
+  /// Not thread-safe: the frame's vertices are stored in the object.
   Image render(const FrameView& frame, const Progress& progress = {});
 
  private:

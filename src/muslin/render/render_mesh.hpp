@@ -1,5 +1,5 @@
-// The triangles of a surface as the ray tracer wants them: in float about a centre, with smooth normals,
-// and with two sides and a rim where a sheet is drawn with its thickness.
+// RenderMesh holds the triangles of a surface for the ray tracer: in float about a centre, with smooth
+// normals, and with two sides and a rim where a sheet is drawn with its thickness.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ class RenderMesh {
   const std::vector<Eigen::Vector3f>& positions() const { return positions_; }
   const std::vector<std::array<std::uint32_t, 3>>& indices() const { return indices_; }
   Primitive primitive(std::size_t p) const;
-  /// The unit normals of the primitive's corners.
+  /// Returns the unit normals of the primitive's corners.
   std::array<Eigen::Vector3f, 3> normals(std::size_t p) const;
 
  private:

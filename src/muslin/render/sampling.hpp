@@ -1,4 +1,4 @@
-// Evenly spread sample points, the same on every machine.
+// Generates evenly spread sample points, the same on every machine.
 #pragma once
 
 #include <cmath>
@@ -9,21 +9,21 @@
 
 namespace muslin::sampling {
 
-/// The index-th point in [0, 1)² of a sequence of multiples of two irrational numbers, given as steps of
-/// 2⁻³² (Roberts 2018: inverse powers of the root of gᵈ⁺¹ = g + 1 fill d dimensions evenly). Whole numbers
+/// Returns the index-th point in [0, 1)² of a sequence of multiples of two irrational numbers, given as steps
+/// of 2⁻³² (Roberts 2018: inverse powers of the root of gᵈ⁺¹ = g + 1 fill d dimensions evenly). Whole numbers
 /// wrap around without loss at any index.
 inline Eigen::Vector2f multiples(std::uint32_t index, std::uint32_t step_x, std::uint32_t step_y) {
   const std::uint32_t a = 0x80000000u + index * step_x;
   const std::uint32_t b = 0x80000000u + index * step_y;
   return {static_cast<float>(a >> 8) * 0x1p-24f, static_cast<float>(b >> 8) * 0x1p-24f};
 }
-// Four dimensions for what one camera ray needs, two for its rays to the sky.
+// Four dimensions for a camera ray and its sun rays, two for its sky rays.
 inline Eigen::Vector2f pixel_point(std::uint32_t index) { return multiples(index, 3679390609u, 3152041523u); }
 inline Eigen::Vector2f sun_point(std::uint32_t index) { return multiples(index, 2700274807u, 2313257605u); }
 inline Eigen::Vector2f sky_point(std::uint32_t index) { return multiples(index, 3242174889u, 2447445415u); }
 
-/// Place of a pixel along the Hilbert curve through its 64 × 64 block. Numbering samples along it makes
-/// neighbouring pixels share the evenness of the sequences: noise is fine-grained instead of clumped.
+/// Returns the place of a pixel along the Hilbert curve through its 64 × 64 block. Numbering samples along it
+/// makes neighbouring pixels share the evenness of the sequences: noise is fine-grained instead of clumped.
 inline std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) {
   std::uint32_t index = 0;
   for (std::uint32_t side = 32; side > 0; side /= 2) {
@@ -53,10 +53,10 @@ inline Eigen::Vector2f disc(const Eigen::Vector2f& square) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// −1…1 with the density of a tent, from uniform 0…1: the pixel filter.
+/// Returns −1…1 with the density of a tent, from uniform 0…1: the pixel filter.
 inline float tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); }
 
-/// Two unit vectors at right angles to the unit vector n and to each other (Duff et al. 2017).
+/// Computes two unit vectors at right angles to the unit vector n and to each other (Duff et al. 2017).
 inline void basis(const Eigen::Vector3f& n, Eigen::Vector3f& s, Eigen::Vector3f& t) {
   const float sign = std::copysign(1.0f, n.z());
   const float a = -1 / (sign + n.z());

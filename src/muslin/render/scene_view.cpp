@@ -6,7 +6,7 @@
 namespace muslin {
 namespace {
 
-/// Metres per unit of texture, from the areas of the triangles in both.
+/// Returns metres per unit of texture, from the areas of the triangles in both.
 double texture_scale(const Mesh& mesh, const std::vector<Vec3i>& triangles, const std::vector<Vec2>& uvs) {
   double metres = 0;
   double texture = 0;
@@ -22,7 +22,7 @@ double texture_scale(const Mesh& mesh, const std::vector<Vec3i>& triangles, cons
   return texture > 0 ? std::sqrt(metres / texture) : 1;
 }
 
-/// The texture coordinates of every triangle corner, or nothing if one is missing.
+/// Returns the texture coordinates of every triangle corner, or none if one is missing.
 std::vector<Vec2> corner_textures(const Mesh& mesh, const Triangulation& cut) {
   std::vector<Vec2> uvs;
   if (mesh.corner_uvs.size() != mesh.face_vertices.size() || mesh.corner_uvs.empty()) return uvs;

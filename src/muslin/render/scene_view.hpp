@@ -1,5 +1,5 @@
-// What a picture shows, as plain data: surfaces that keep their triangles and move their vertices from
-// frame to frame, markers, a ground, and how each thing looks.
+// SceneView describes a picture as plain data: surfaces with fixed triangles and vertices that move from
+// frame to frame, markers, a ground, and the look of each.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ enum class Pattern {
   checks,  ///< squares, which show how a surface stretches and shears
 };
 
-/// How a surface takes the light. Colours are sRGB 0…1.
+/// Optical properties of a surface. Colours are sRGB 0…1.
 struct Look {
   Vec3 colour = Vec3(0.70, 0.22, 0.18);
   std::optional<Vec3> back_colour;  ///< of the side the face normals point away from; none = same
@@ -47,9 +47,9 @@ struct Surface {
   double thickness = 0;       ///< drawn thickness of an open sheet [m]; 0 draws the triangles alone
 };
 
-/// A surface to draw from a mesh. The pattern lies on the texture coordinates scaled to metres or, without
-/// any, on the rest positions seen along the thinnest side of their box; a period of 0 becomes 1/120 of
-/// the largest side.
+/// Makes a surface to draw from a mesh. The pattern lies on the texture coordinates scaled to metres or,
+/// without any, on the rest positions seen along the thinnest side of their box; a period of 0 becomes 1/120
+/// of the largest side.
 Surface make_surface(const Mesh& mesh, const Look& look);
 
 /// A small ball, such as a pin.

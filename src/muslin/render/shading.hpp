@@ -1,4 +1,4 @@
-// Light and how matter takes it: the formulas of the preview, apart from where rays go.
+// Provides the formulas for lights and materials of the preview, without the ray tracing.
 #pragma once
 
 #include <cmath>
@@ -37,16 +37,17 @@ struct Lighting {
   Light mean_sky() const { return 0.5f * (horizon + zenith); }
 };
 
-/// Reflected part of sunlight per irradiance · cosine · colour/π: Oren and Nayar 1994, their qualitative
-/// model. All unit vectors; normal · to_light > 0.
+/// Returns the reflected part of sunlight per irradiance · cosine · colour/π: Oren and Nayar 1994, their
+/// qualitative model. All unit vectors; normal · to_light > 0.
 float oren_nayar(const Material& material, const Eigen::Vector3f& normal, const Eigen::Vector3f& to_light,
                  const Eigen::Vector3f& to_eye);
 
-/// Highlight for the same light: a normalised Blinn–Phong lobe with Schlick's Fresnel term (n = 1.5).
+/// Returns the highlight for the same light: a normalised Blinn–Phong lobe with Schlick's Fresnel term (n =
+/// 1.5).
 float highlight(const Material& material, const Eigen::Vector3f& normal, const Eigen::Vector3f& to_light,
                 const Eigen::Vector3f& to_eye);
 
-/// Brightness of the pattern about 1, fading out where a repeat is smaller than `footprint` [m].
+/// Returns the brightness of the pattern about 1, fading out where a repeat is smaller than `footprint` [m].
 float pattern_factor(const Material& material, const Eigen::Vector2f& position, float footprint);
 
 }  // namespace muslin

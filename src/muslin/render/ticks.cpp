@@ -12,7 +12,7 @@ namespace {
 std::string label(double value, double step, double largest) {
   if (value == 0) return "0";
   if (largest >= 1e5 || step < 1e-4) {
-    // Exponent form with only the digits that tell neighbours apart.
+    // Exponent form with only the digits that distinguish neighbours.
     const int digits = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-9) -
                                                    std::floor(std::log10(step) + 1e-9)),
                                   0, 12);

@@ -1,4 +1,4 @@
-// Round numbers on an axis.
+// Finds round numbers for the ticks of an axis.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ struct Ticks {
   std::vector<std::string> labels;  ///< each with the digits that step needs
 };
 
-/// About `wanted` ticks. A range without extent is widened about its value.
+/// Returns about `wanted` ticks. A range without extent is widened about its value.
 Ticks round_ticks(double low, double high, int wanted);
 
 }  // namespace muslin

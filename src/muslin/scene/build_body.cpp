@@ -13,10 +13,10 @@
 namespace muslin {
 namespace {
 
-// Above this the run is long and takes several GiB: worth a word before it starts.
+// Above this the run is long and takes several GiB; the user is warned.
 constexpr std::size_t many_voxels = 2'000'000;
 
-/// Errors of the mesh and of what is built from it, with the place in the scene and the mesh file.
+/// Calls build(); its errors get the place in the scene and the mesh file.
 template <class Build>
 auto at_place(const Place& place, const std::string& file, const Build& build) -> decltype(build()) {
   try {
@@ -70,7 +70,7 @@ class BodyBuilder {
     for (const std::string& warning : body_.report.warnings) say(warning);
   }
 
-  /// The shape without stress: the mesh as it was modelled (scaled, not turned), or another of the same
+  /// The stress-free shape: the mesh as it was modelled (scaled, not turned), or another of the same
   /// polygons.
   Mesh rest_mesh() {
     if (settings_.rest_mesh.empty()) return body_.mesh;
@@ -95,7 +95,7 @@ class BodyBuilder {
     progress.at(0.5, "shell");
     Weave weave{settings_.warp};
     if (weave.warp && settings_.rest_mesh.empty()) {
-      // The direction is one of the mesh as modelled.
+      // The direction refers to the mesh as modelled.
       weave.warp = placement(Vec3::Zero(), settings_.rotate, Vec3::Ones()) * *weave.warp;
     }
     const bool textured = !body_.mesh.corner_uvs.empty() &&

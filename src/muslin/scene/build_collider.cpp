@@ -20,11 +20,11 @@ namespace {
 
 using Shape = ColliderSettings::Shape;
 
-/// A plane is shown this many times as wide as what is around it.
+/// A plane is shown this many times as wide as the box of the other bodies.
 constexpr double plane_reach = 2;
 constexpr double smallest_volume = 1e-21;  // [m³]
 
-/// Where a box or mesh stands in the world.
+/// Returns the placement of a box or mesh in the world.
 Eigen::Affine3d placed(const ColliderSettings& c) {
   if (c.shape == Shape::mesh) return placement(c.translate, c.rotate, c.scale);
   Eigen::Affine3d turned = placement(c.center, c.rotate, Vec3::Ones());
@@ -77,7 +77,7 @@ void require_solid(const ColliderSettings& c, const MeshReport& report, const Me
                                        : "close its holes, or leave `density` out");
 }
 
-/// Of density 1.
+/// Returns the mass properties for density 1.
 MassProperties mass_of(const ColliderSettings& c, const Body& body) {
   switch (c.shape) {
     case Shape::plane:
@@ -101,7 +101,7 @@ MassProperties mass_of(const ColliderSettings& c, const Body& body) {
   return {};
 }
 
-/// The body of a mesh that follows a sequence, at time 0.
+/// Builds the body of a mesh that follows a sequence, at time 0.
 void follow_sequence(const Scene& scene, const ColliderSettings& c, BuiltCollider& built) {
   const std::string file = resolve_path(scene, c.sequence).string();
   Body& body = built.body;
@@ -132,7 +132,7 @@ void follow_sequence(const Scene& scene, const ColliderSettings& c, BuiltCollide
   body.mesh.positions = built.motion.start;
 }
 
-/// Not too far away, before and after it was moved.
+/// Checks the coordinates, before and after the mesh was moved.
 void require_usable(const Body& body, const ColliderSettings& settings) {
   try {
     muslin::require_usable(body.mesh, settings.mesh);
@@ -142,7 +142,7 @@ void require_usable(const Body& body, const ColliderSettings& settings) {
   }
 }
 
-/// Any four points carry what has no mass: those of its bounding box.
+/// Returns a frame from the bounding box; any four points can carry a body without mass.
 AffineFrame box_frame(const Box& bounds) {
   AffineFrame frame;
   frame.centre = bounds.center();

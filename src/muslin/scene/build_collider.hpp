@@ -1,4 +1,4 @@
-// From the settings of a collider to a body: a mesh to look at, and what moves it.
+// Builds a body from the settings of a collider: a mesh for pictures, and its motion.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@ struct BuiltCollider {
   Prescribed motion;  ///< of its vertices, if it has no density; `first` is 0
 };
 
-/// Everything of Body but its place among the vertices of the model. `around` is what the other bodies fill
-/// at the start: a plane, which has no end, is shown as far as they reach and some way beyond. Appends to
-/// `warnings`. Errors: input and file, with the place in the scene and the mesh file.
+/// Builds all of Body except its vertex range in the model. `around` is the box of the other bodies at the
+/// start: a plane, which is unbounded, is shown somewhat beyond it. Appends to `warnings`. Errors: input and
+/// file, with the place in the scene and the mesh file.
 BuiltCollider build_collider(const Scene& scene, const ColliderSettings& settings, const Box& around,
                              std::vector<std::string>& warnings);
 
-/// Points of the body as combinations of its four control vertices.
+/// Returns points of the body as combinations of its four control vertices.
 Embedding embed(const AffineFrame& frame, ConstVectors points);
 
 }  // namespace muslin

@@ -21,7 +21,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double size_share = 1.0 / 500, edge_share = 0.2;  // of d̂
 constexpr double thin = 5e-4, thin_share = 0.1;             // thickness of shells: [m], of the mean edge
 constexpr double stiffness_share = 0.15;
-/// The least stiffness carries the body's weight at half the range by this share of its points.
+/// With the least stiffness this share of its points carries the body's weight at half the range.
 constexpr double carrying_share = 0.1, gravity = 9.81;
 constexpr double floor_share = 0.005;       // of the gap floor, in d̂
 
@@ -30,7 +30,7 @@ double lattice_stiffness(const Body& body, const BodySettings& settings) {
   const ElasticModuli moduli = elastic_moduli(
       {m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus}, settings.bracing, m.volume_modulus);
   const double width = body.lattice.width;
-  // Of a sheet, springs are as stiff as its thickness asks for, unless every voxel counts full.
+  // The springs of a sheet have the stiffness of its thickness, unless every voxel counts full.
   const bool thin = body.sheet && settings.mass == BodySettings::Mass::solid;
   return stiffness_share * moduli.youngs * (thin ? std::min(width, body.thickness) : width);
 }
@@ -83,7 +83,7 @@ class ContactBuilder {
       contact.radius = body.sheet ? body.thickness / 2 : 0;
       contact.stiffness = lattice_stiffness(body, settings);
     }
-    // What does not resist stretch at all still has weight to be held up.
+    // A body without stretch resistance still needs contact to carry its weight.
     if (!(contact.stiffness > 0)) contact.mass = mean_mass(body);
     note_size(body, edge);
     add_mesh(body, cut, contact);
@@ -95,7 +95,7 @@ class ContactBuilder {
     }
   }
 
-  /// The mean mass of a vertex [kg].
+  /// Returns the mean mass of a vertex [kg].
   double mean_mass(const Body& body) const {
     const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
     return std::accumulate(model_.masses.begin() + first, model_.masses.begin() + first + body.vertex_count,
@@ -160,13 +160,13 @@ class ContactBuilder {
     });
   }
 
-  /// The vertices that carry a round body, so that friction sees it turn.
+  /// Returns the vertices that carry a round body, from which friction gets its rotation.
   static std::array<int, 4> frame_of(const Body& body) {
     const int first = body.first_vertex;
     return {first, first + 1, first + 2, first + 3};
   }
 
-  /// How far a collider has moved from where its shape is given, at time 0.
+  /// Returns the motion of a collider from its given shape at time 0.
   Eigen::Isometry3d start_of(const Body& body) const {
     for (const Prescribed& p : model_.prescribed)
       if (p.first == body.first_vertex) return p.motion.at(0);
@@ -178,7 +178,7 @@ class ContactBuilder {
     shortest_edge_ = std::min(shortest_edge_, edge);
   }
 
-  /// Of the body that is in work.
+  /// Adds a point of the current body.
   int add_point(const Body& body, const Vec3& at) {
     const auto weights = body.frame.weights(at);
     for (int i = 0; i < 4; ++i)
@@ -208,7 +208,7 @@ class ContactBuilder {
   void add_mesh(const Body& body, const Triangulation& cut, const ContactBody& contact) {
     const int first = static_cast<int>(rest_.size());
     for (std::size_t p = 0; p < body.skin.size(); ++p) {
-      // The same vertex may be named twice, with weight 0.
+      // The same vertex may occur twice, with weight 0.
       for (std::size_t s = 0; s < 8; ++s) {
         if (body.skin.weights[p][s] == 0) continue;
         entries_.push_back({body.first_vertex + body.skin.vertices[p][s], body.skin.weights[p][s]});
@@ -244,7 +244,7 @@ class ContactBuilder {
     model_.contact = model;
   }
 
-  /// Whether points are the vertices, one by one: nothing but shells.
+  /// True if the points are the vertices, in order: only shells.
   bool is_identity() const {
     if (entries_.size() != model_.vertex_count() || offsets_.size() != entries_.size() + 1) return false;
     for (std::size_t i = 0; i < entries_.size(); ++i)

@@ -1,4 +1,4 @@
-// What of a scene touches what: Model::contact.
+// Builds Model::contact, the contact of a scene.
 #pragma once
 
 #include "muslin/scene/model.hpp"
@@ -6,7 +6,7 @@
 namespace muslin {
 
 /// Contact is on in scenes with a collider, with [contact], or of more than one body; bodies and colliders
-/// with `contact = false` are left out. Null if nothing of what is left can touch.
+/// with `contact = false` are left out. Null if none of the others can touch.
 ///
 /// Surfaces, as maps of the vertices: a shell is its triangles, thickened by half its thickness; a lattice is
 /// its mesh, thickened as well if that is a sheet; a sphere a point, a capsule a segment, both thickened by
@@ -18,8 +18,8 @@ namespace muslin {
 ///
 /// Stiffness of a contact: of a shell 0.15 × its mean membrane modulus [N/m]; of a lattice 0.15 × Young's
 /// modulus along its voxels × voxel width (or thickness, of a thinner sheet whose voxels count by their
-/// share); of a rigid body mass/step², which lets it sink in by what it would fall in one step, and no more;
-/// colliders take that of the other.
+/// share); of a rigid body mass/step², which limits its penetration to its free fall in one step; colliders
+/// take that of the other.
 ///
 /// Needs all bodies; adds to model.warnings. Errors: input, if the integrator is explicit.
 void build_contact(Model& model);

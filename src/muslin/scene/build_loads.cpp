@@ -39,7 +39,7 @@ void add_gravity(Model& model, const ForceSettings& force) {
     const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
     std::copy_n(model.masses.begin() + first, body.vertex_count, masses.begin() + first);
   }
-  // Only a field that stands still for the whole run stores energy; a changing one does work.
+  // Only a field constant during the whole run stores energy; a changing one does work.
   const bool steady =
       force.value.keys.size() == 1 && force.from <= 0 && force.until >= model.scene.time.duration;
   model.loads.push_back(
@@ -47,7 +47,7 @@ void add_gravity(Model& model, const ForceSettings& force) {
        std::make_shared<Gravity>(std::move(masses), force.value, Window{force.from, force.until})});
 }
 
-/// Of the forces on points of a rigid body, or of the one on its centre.
+/// Returns the shares of the corners in the forces on points of a rigid body, or in that on its centre.
 std::vector<double> shares_of_corners(const Body& body, const ForceSettings& force) {
   if (!force.where) return {0.25, 0.25, 0.25, 0.25};
   std::vector<double> shares(4, 0.0);
@@ -100,7 +100,7 @@ void add_wind(Model& model, const ForceSettings& force) {
   }
 }
 
-/// The point of the surface nearest to `at`, carried by the corners of its triangle.
+/// Returns the point of the surface nearest to `at`, carried by the corners of its triangle.
 Embedding point_of_surface(Model& model, const Body& body, const ProbeSettings& settings) {
   const std::vector<Vec3i> triangles = triangulate(body.mesh).triangles;
   const ClosestPoint nearest = ClosestPointQuery(body.mesh.positions, triangles)(settings.at);

@@ -1,4 +1,4 @@
-// From pins, forces and probes of the scene to those of the model.
+// Builds the energies, forces, pins and probes of the model from those of the scene.
 #pragma once
 
 #include "muslin/scene/model.hpp"
@@ -6,7 +6,7 @@
 namespace muslin {
 
 /// Adds the elastic energies and dampings of every body, the forces, the pins and the probes of
-/// model.scene to `model`, whose bodies, rest positions and masses are there already, and fills in
+/// model.scene to `model`, whose bodies, rest positions and masses already exist, and fills in
 /// BodyStatistics::stable_step. Errors: input, with the place in the scene.
 void build_materials(Model& model);
 void build_forces(Model& model);

@@ -69,7 +69,7 @@ void add_collider(Model& model, BuiltCollider built, const ColliderSettings& set
   model.bodies.push_back(std::move(body));
 }
 
-/// Planes last, as what is shown of them depends on the others; each in its place among the bodies.
+/// Builds planes last, as their shown size depends on the others; each at its place among the bodies.
 void add_colliders(Model& model) {
   const std::vector<ColliderSettings>& colliders = model.scene.colliders;
   Box around;
@@ -85,7 +85,7 @@ void add_colliders(Model& model) {
   for (std::size_t c = 0; c < colliders.size(); ++c) add_collider(model, std::move(built[c]), colliders[c]);
 }
 
-/// Chooses as many steps as stability at rest needs, with some to spare.
+/// Chooses the number of steps needed for stability at rest, with a margin.
 void choose_explicit_steps(Model& model) {
   TimeSettings& time = model.scene.time;
   if (model.scene.solver.integrator != Integrator::symplectic_euler || time.steps_per_frame) return;

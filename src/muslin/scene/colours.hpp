@@ -1,4 +1,4 @@
-// How pictures tell bodies apart where the scene does not say.
+// Provides default colours of bodies and colliders in pictures.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// Of the body with this number, sRGB 0…1.
+/// Returns the colour of the body with this number, sRGB 0…1.
 inline Vec3 palette_colour(std::size_t index) {
   static const std::array<Vec3, 5> palette = {Vec3(0.72, 0.20, 0.17), Vec3(0.16, 0.42, 0.62),
                                               Vec3(0.82, 0.60, 0.20), Vec3(0.30, 0.52, 0.32),
@@ -16,10 +16,10 @@ inline Vec3 palette_colour(std::size_t index) {
   return palette[index % palette.size()];
 }
 
-/// Of colliders: muted, so that bodies stand out.
+/// Returns the colour of colliders: muted, so that bodies stand out.
 inline Vec3 collider_colour() { return {0.52, 0.54, 0.57}; }
 
-/// Of a body of the model, counted with the colliders after the bodies of the scene.
+/// Returns the colour of a body of the model; colliders are counted after the bodies of the scene.
 inline Vec3 colour_of(const Scene& scene, std::size_t index) {
   const std::size_t bodies = scene.bodies.size();
   return index < bodies ? scene.bodies[index].colour.value_or(palette_colour(index))

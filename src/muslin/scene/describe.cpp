@@ -25,7 +25,7 @@ std::string counted(std::size_t count, const std::string& one, const std::string
 }
 std::string counted(std::size_t count, const std::string& one) { return counted(count, one, one + "s"); }
 
-/// Below this symplectic_euler is stable for every body [s].
+/// Returns the step below which symplectic_euler is stable for every body [s].
 double stable_step(const Model& model) {
   double step = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < model.scene.bodies.size(); ++b)
@@ -33,7 +33,7 @@ double stable_step(const Model& model) {
   return step;
 }
 
-/// What every body has, be it as many as none.
+/// Adds counts reported for every body; may be zero.
 void add_counts(const Body& body, const BodySettings& settings, Json& json) {
   const BodyStatistics& s = body.statistics;
   json["material"] = settings.material.name;
@@ -81,7 +81,7 @@ Json bodies_json(const Model& model) {
   return bodies;
 }
 
-/// How a collider moves.
+/// Returns the kind of motion of a collider.
 std::string movement(const ColliderSettings& settings) {
   if (settings.is_free()) return "rigid body";
   return !settings.sequence.empty() ? "sequence" : settings.motion.keys.empty() ? "fixed" : "keyframed";
@@ -103,7 +103,7 @@ Json colliders_json(const Model& model) {
   return colliders;
 }
 
-/// Null where nothing can touch.
+/// Returns null if nothing can touch.
 Json contact_json(const Model& model) {
   if (!model.contact) return nullptr;
   return {{"distance", model.contact->distance},

@@ -1,5 +1,6 @@
-// All that does not change during a run: bodies with their lattices or shells, masses, potentials, loads,
-// pins, probes. Made once from a Scene; shared read-only by the simulation and its writers.
+// Model holds all data that is constant during a run: bodies with their lattices or shells, masses,
+// potentials, loads, pins, probes. Built once from a Scene; shared read-only by the simulation and its
+// writers.
 #pragma once
 
 #include <array>
@@ -32,7 +33,7 @@ struct BodyStatistics {
   double coverage = 1;                     ///< share of the mesh's area inside kept voxels
   double contour_distance = 0;             ///< largest distance of the rest contour from the solid [m]
   std::int64_t triangles = 0, hinges = 0;  ///< of a shell
-  double stable_step = 0;  ///< below this symplectic_euler is stable at rest [s]; infinity without springs
+  double stable_step = 0;  ///< largest stable step of symplectic_euler at rest [s]; infinity without springs
 };
 
 /// A body of any model. Only a lattice has solid, lattice, springs and contour. The vertices of a shell or a
@@ -43,7 +44,7 @@ struct Body {
   BodyModel model = BodyModel::lattice;
   Mesh mesh;  ///< the user's mesh, placed in the world; the skin's polygons, UVs and rest positions
   Mesh
-      solid;  ///< what is filled with voxels: the mesh itself, faces outward, or the sheet with its thickness
+      solid;  ///< a solid filled with voxels: the mesh itself, faces outward, or the sheet with its thickness
   MeshReport report;  ///< of mesh
   bool sheet =
       false;  ///< thin: a shell, or a mesh that is open or encloses nothing and was given a thickness
@@ -52,7 +53,7 @@ struct Body {
   Springs springs;
   Shell shell;
   AffineFrame frame;        ///< of a rigid body, at the start
-  bool prescribed = false;  ///< moves as it is told, not as it is pushed; it has no mass
+  bool prescribed = false;  ///< kinematic: prescribed motion, no mass
   double mean_edge = 0;     ///< of a collider's mesh [m]
   Embedding skin;           ///< of mesh.positions
   Contour contour;
@@ -65,15 +66,16 @@ struct Body {
   bool is_shell() const { return model == BodyModel::shell; }
   bool is_rigid() const { return model == BodyModel::rigid; }
   bool is_soft() const { return has_lattice() || is_shell(); }
-  /// Of the vertex counted within the body, at the start [m].
+  /// Returns the start position of the vertex, counted within the body [m].
   Vec3 rest_position(std::size_t v) const {
     return has_lattice() ? lattice.rest_position(v) : is_rigid() ? frame.corners()[v] : mesh.positions[v];
   }
-  /// Typical distance of neighbouring vertices: the voxel width, or the mean edge of the mesh [m].
+  /// Returns the typical distance of neighbouring vertices: the voxel width, or the mean edge of the mesh
+  /// [m].
   double spacing() const { return has_lattice() ? lattice.width : is_shell() ? shell.mean_edge : mean_edge; }
 };
 
-/// How a potential enters the energy balance.
+/// Role of a potential in the energy balance.
 enum class EnergyRole {
   elastic,      ///< stored in the material
   potential,    ///< stored in a fixed field (gravity)
@@ -110,10 +112,10 @@ struct Model {
   std::vector<Prescribed> prescribed;
   std::vector<Probe> probes;
   std::shared_ptr<const ContactModel> contact;  ///< null if nothing can touch
-  std::vector<std::string> warnings;            ///< what the user should know before a run
+  std::vector<std::string> warnings;            ///< for the user, before a run
 
   std::size_t vertex_count() const { return rest_positions.size(); }
-  /// The body of a collider, counted among the colliders of the scene.
+  /// Returns the body of a collider, counted among the colliders of the scene.
   const Body& collider(std::size_t index) const { return bodies[scene.bodies.size() + index]; }
   ConstVectors of(const Body& body, ConstVectors all) const {
     return all.subspan(static_cast<std::size_t>(body.first_vertex),

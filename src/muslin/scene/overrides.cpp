@@ -59,7 +59,7 @@ const std::string* name_of(const TomlValue& item) {
   return name != nullptr && name->type == TomlValue::Type::string ? &name->string : nullptr;
 }
 
-/// The entry of a list that the path begins with. Names may hold dots, so the longest that fits wins.
+/// Returns the list entry that the path begins with. Names may contain dots, so the longest match wins.
 TomlValue& take_entry(TomlValue& list, std::string_view& path, const Place& place) {
   TomlValue* best = nullptr;
   std::size_t letters = 0;

@@ -6,7 +6,8 @@
 namespace muslin {
 namespace {
 
-/// Multiples of a quarter turn come out exact, so that a body turned upright keeps its round coordinates.
+/// Returns exact values for multiples of a quarter turn, so that a body turned upright keeps its round
+/// coordinates.
 Eigen::Matrix3d turn(double degrees, const Vec3& axis) {
   const double reduced = std::remainder(degrees, 360.0);
   Eigen::Matrix3d result = Eigen::AngleAxisd(reduced * std::numbers::pi / 180.0, axis).toRotationMatrix();

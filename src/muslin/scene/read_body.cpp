@@ -27,7 +27,7 @@ Material named_material(const std::string& name, const Place& place, const std::
   }
 }
 
-/// The three moduli from Young's modulus, and perhaps a shear modulus.
+/// Reads the three moduli from Young's modulus and an optional shear modulus.
 void read_elastic_moduli(const TomlTable& table, Bracing bracing, Material& material) {
   for (const char* key : {"edge_modulus", "face_diagonal_modulus", "body_diagonal_modulus"}) {
     if (!table.has(key)) continue;
@@ -53,7 +53,7 @@ void read_elastic_moduli(const TomlTable& table, Bracing bracing, Material& mate
   material.body_diagonal_modulus = moduli.body_diagonal;
 }
 
-/// The names of the library's materials that have numbers for the model.
+/// Returns the library's materials that have numbers for the model.
 std::vector<std::string> materials_for(BodyModel model) {
   std::vector<std::string> names;
   for (const std::string& name : material_names()) {
@@ -141,7 +141,7 @@ BodyModel read_model(const TomlTable& body) {
   return model;
 }
 
-/// Below this, products with blocks are made in double at usual resolutions: many times slower.
+/// Below this, products with blocks use double at usual resolutions, which is many times slower.
 constexpr double low_stretch_limit = 1.005;
 
 void read_shell_settings(const TomlTable& table, BodySettings& body, std::vector<std::string>& warnings) {

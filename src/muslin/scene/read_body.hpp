@@ -1,4 +1,4 @@
-// Reading a [[body]].
+// Reads a [[body]].
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace muslin {
 
-/// `index` counts the bodies from 0; `folder` is that of the scene file, for materials in files of their own.
-/// Appends to `warnings` what is legal but probably not meant. Errors: input, file.
+/// `index` counts the bodies from 0; `folder` is that of the scene file, for material files. Appends warnings
+/// about settings that are legal but probably unintended. Errors: input, file.
 BodySettings read_body(const TomlValue& value, std::size_t index, const std::filesystem::path& folder,
                        std::vector<std::string>& warnings);
 

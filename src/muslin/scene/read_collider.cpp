@@ -133,7 +133,7 @@ ColliderSettings read_collider(const TomlValue& value, std::size_t index) {
 
 namespace {
 
-/// Scenes for earlier versions have it.
+/// Refuses `contact.mode`, a key of earlier versions.
 void refuse_mode(const TomlTable& top) {
   const TomlValue* contact = top.find("contact");
   if (contact == nullptr || contact->type != TomlValue::Type::table) return;

@@ -1,4 +1,4 @@
-// Reading a [[collider]], and [contact].
+// Reads a [[collider]] and [contact].
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace muslin {
 /// `index` counts the colliders from 0. Errors: input.
 ColliderSettings read_collider(const TomlValue& value, std::size_t index);
 
-/// [contact] of the scene, defaults if there is none. Errors: input.
+/// Reads [contact] of the scene, with defaults if there is none. Errors: input.
 ContactSettings read_contact(const TomlTable& top);
 
 }  // namespace muslin

@@ -1,4 +1,4 @@
-// What the tables of a scene have in common: names, paths, scales, colours, keyframes.
+// Reads settings common to several tables of a scene: names, paths, scales, colours, keyframes.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,23 @@
 
 namespace muslin {
 
-/// How messages call the table: `[[body]] flag`, or by its number among its kind.
+/// Returns the table's name in messages: `[[body]] flag`, or with its number among its kind.
 std::string title_of(const std::string& kind, const TomlValue& value, std::size_t index);
 
-/// Names of bodies, pins, … end up in file names and paths: not empty, no separators or control characters.
-/// Throws Error(input) if `name` is no such name.
+/// Throws Error(input) unless `name` is valid in file names and paths: not empty, no separators or control
+/// characters.
 void require_name(const std::string& name, const Place& place);
 
-// All: Errors: input, with the place.
+// Errors of all: input, with the place.
 std::string read_name(const TomlTable& table, const std::string& fallback);
 std::string read_path(const TomlTable& table, const char* key);
-/// A number or one per axis, all positive.
+/// Reads a number or one per axis, all positive.
 Vec3 read_scale(const TomlTable& table);
-/// `friction`, Coulomb's coefficient, 0 to 100.
+/// Reads `friction`, Coulomb's coefficient, 0 to 100.
 std::optional<double> read_friction(const TomlTable& table);
 
 std::optional<Vec3> read_colour(const TomlTable& table);
-/// The direction under the key, of length 1.
+/// Returns the direction under the key, of length 1.
 Vec3 read_direction(const TomlTable& table, const char* key, const char* example);
 
 /// Calls read(key, time) for the tables under `keyframes`, each with a time after the one before.
@@ -53,7 +53,8 @@ void read_keyframes(const TomlTable& owner, const std::vector<std::string>& know
   }
 }
 
-/// `keyframes` of `time`, `translate` and `rotate`; their known keys are those of the table `vocabulary`.
+/// Reads `keyframes` of `time`, `translate` and `rotate`; their known keys are those of the table
+/// `vocabulary`.
 std::vector<Motion::Key> read_motion(const TomlTable& owner, const char* vocabulary);
 
 }  // namespace muslin

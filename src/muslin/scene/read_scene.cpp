@@ -66,7 +66,7 @@ SolverSettings read_solver(const TomlTable& top) {
   return solver;
 }
 
-/// The tables of a list such as [[pin]]; none if the key is missing.
+/// Returns the tables of a list such as [[pin]]; none if the key is missing.
 const std::vector<TomlValue>& entries(const TomlTable& top, const std::string& key) {
   static const std::vector<TomlValue> none;
   const TomlValue* value = top.find(key);
@@ -108,7 +108,7 @@ bool is_rigid(const Scene& scene, const std::string& name) {
                      [&](const ColliderSettings& collider) { return collider.name == name; });
 }
 
-/// The body that the table names; if it names none, the only one, or, if `all_allowed`, "" for all.
+/// Returns the body that the table names; if it names none, the only one, or, if `all_allowed`, "" for all.
 std::string read_body_name(const TomlTable& table, const Scene& scene, bool all_allowed) {
   const std::vector<std::string> names = movable_names(scene);
   if (!table.has("body")) {

@@ -1,4 +1,4 @@
-// Reading `where`.
+// Reads `where`.
 #pragma once
 
 #include "muslin/core/toml_table.hpp"
@@ -6,7 +6,7 @@
 
 namespace muslin {
 
-/// The selection under the key `where` of a pin or force. Errors: input; also if it has no criterion.
+/// Returns the selection under the key `where` of a pin or force. Errors: input; also if it has no criterion.
 Selection read_selection(const TomlTable& owner);
 
 }  // namespace muslin

@@ -1,4 +1,4 @@
-// The scene with every setting spelled out.
+// Writes the scene with every setting made explicit.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace muslin {
 
-/// JSON of every setting with its value, defaults included, by the words of the scene file. Times without
-/// end are null.
+/// Returns JSON of every setting with its value, defaults included, by the words of the scene file. Infinite
+/// times are null.
 std::string resolved_json(const Scene& scene);
 
 }  // namespace muslin

@@ -1,5 +1,5 @@
-// The scene as the user wrote it, checked and with defaults filled in. Every quantity has its place in the
-// file, so that later errors can point at it.
+// Scene holds the user's scene, checked and with defaults filled in. Settings store their place in the file
+// for later error messages.
 #pragma once
 
 #include <array>
@@ -29,14 +29,14 @@ namespace muslin {
 struct TimeSettings {
   double duration = 2;     ///< [s]
   double frame_rate = 24;  ///< [1/s]
-  std::optional<int> steps_per_frame;  ///< none: chosen by the program as the motion needs them
+  std::optional<int> steps_per_frame;  ///< none: adaptive
 
   int frames() const;  ///< last frame number; frame 0 is the start
-  /// The step of a fixed number a frame; the longest one otherwise [s].
+  /// Returns the step for a fixed number per frame; the longest one otherwise [s].
   double step() const { return 1.0 / (frame_rate * steps_per_frame.value_or(1)); }
 };
 
-/// What a body's degrees of freedom are.
+/// The degrees of freedom of a body.
 enum class BodyModel {
   lattice,   ///< voxels filled into the mesh, with springs
   shell,     ///< the mesh itself, as thin cloth
@@ -44,8 +44,8 @@ enum class BodyModel {
   sequence,  ///< a collider whose vertices move along samples: the mesh itself
 };
 
-/// Where in a body: the vertices (of its lattice, or of its mesh if it is a shell) that satisfy every
-/// criterion given. Coordinates are those of the world at rest, after the body has been placed.
+/// Selects the vertices of a body (of its lattice, or of its mesh if it is a shell) that satisfy every given
+/// criterion. Coordinates are those of the world at rest, after the body has been placed.
 struct Selection {
   struct BoxShape {
     Vec3 min, max;
@@ -60,7 +60,7 @@ struct Selection {
     std::optional<double> distance;  ///< [m]; default: half a voxel width (shell: half a mean edge), so that
                                      ///< one layer is always met
   };
-  /// Within distance of the segment.
+  /// Within `distance` of the segment.
   struct LineShape {
     Vec3 a, b;
     std::optional<double> distance;  ///< [m]; default: ¾ of a voxel width or mean edge, so that a line in the
@@ -80,14 +80,14 @@ struct BodySettings {
   std::string mesh;  ///< path as written; relative to the scene file
   Place mesh_place;
   BodyModel model = BodyModel::lattice;
-  // Of shells.
+  // For shells.
   std::optional<double> shell_thickness;  ///< as contact sees it [m]; default: see build_contact.hpp
   std::string rest_mesh;                  ///< path of the shape without stress; empty: `mesh`
   Place rest_mesh_place;
   std::optional<Vec3>
       warp;  ///< direction of the warp threads; default: along the texture's u, or the longest side
   std::optional<double> stretch_limit;  ///< of length to rest length in every direction, > 1; default: none
-  // Of lattices.
+  // For lattices.
   std::optional<double> thickness;  ///< of an open mesh [m]; default: one voxel width
   LatticeSettings lattice;
   Bracing bracing = Bracing::kuhn;
@@ -105,7 +105,7 @@ struct BodySettings {
   Place place;
 };
 
-/// What stands or moves in the way of bodies; with a density it is a rigid body itself.
+/// An obstacle for bodies, static or moving; with a density it is a rigid body itself.
 struct ColliderSettings {
   enum class Shape { plane, sphere, capsule, box, mesh } shape = Shape::plane;
   std::string name;
@@ -119,13 +119,13 @@ struct ColliderSettings {
   Vec3 translate = Vec3::Zero();  ///< of a mesh [m]
   Vec3 rotate = Vec3::Zero();     ///< of a mesh, or of a box about its centre [degrees], as of a body
   Vec3 scale = Vec3::Ones();      ///< of a mesh
-  Motion motion;                  ///< away from where the shape stands
+  Motion motion;                  ///< relative to the shape's placement
   std::optional<Vec3> pivot;      ///< of the motion [m]; default: the middle of the shape
   std::string sequence;           ///< path of the samples that a mesh follows; empty: none
   Place sequence_place;
   std::optional<double> frame_rate;  ///< of the samples, but of those of an .mdd [1/s]; default: the scene's
-  std::optional<double> start;    ///< when the first sample is shown [s]; default: what the file says, or 0
-  std::optional<double> density;  ///< [kg/m³]; given: it falls, rolls and is pushed
+  std::optional<double> start;    ///< time of the first sample [s]; default: that of the file, or 0
+  std::optional<double> density;  ///< [kg/m³]; if given, it moves dynamically
   Vec3 velocity = Vec3::Zero();   ///< initial, with a density [m/s]
   Vec3 angular_velocity = Vec3::Zero();  ///< initial, with a density, about its centre of mass [degrees/s]
   bool contact = true;
@@ -137,15 +137,15 @@ struct ColliderSettings {
 };
 
 struct ContactSettings {
-  bool given = false;              ///< whether the scene has the table
+  bool given = false;              ///< true if the scene has the table
   std::optional<double> distance;  ///< d̂ [m]; default: see build_contact.hpp
-  double friction = 0.3;           ///< Coulomb's μ, of what has none of its own
+  double friction = 0.3;           ///< Coulomb's μ of bodies without their own
   Place place;
 };
 
 struct PinSettings {
   std::string name, body;
-  Selection where;  ///< of a rigid body nothing: it is held as a whole
+  Selection where;  ///< unused for a rigid body, which is held as a whole
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Motion motion;
   std::optional<Vec3> pivot;  ///< of the motion [m]; default: the centre of the held vertices at rest
@@ -182,7 +182,7 @@ struct Scene {
   std::filesystem::path file;         ///< where it was read from
   std::string text;                   ///< the file as it was read
   std::string resolved;               ///< JSON: every setting with its value, defaults included
-  std::vector<std::string> warnings;  ///< what is legal but probably not meant
+  std::vector<std::string> warnings;  ///< legal but probably unintended settings
   TimeSettings time;
   SolverSettings solver;
   std::vector<BodySettings> bodies;
@@ -191,22 +191,22 @@ struct Scene {
   std::vector<PinSettings> pins;
   std::vector<ForceSettings> forces;
   std::vector<ProbeSettings> probes;
-  /// Meshes that are in no file, by the path under which the scene names them: for programs that make their
-  /// own. They go before files of that path.
+  /// In-memory meshes, by their path in the scene: for programs that make their own. They take precedence
+  /// over files of that path.
   std::map<std::string, std::shared_ptr<const Mesh>> meshes;
 };
 
-/// A path of the scene as written, made relative to the scene file's folder.
+/// Returns a path as written in the scene, resolved against the scene file's folder.
 std::filesystem::path resolve_path(const Scene& scene, const std::string& path);
 
-/// The mesh that the scene calls `path`: one of its own, or that file. Errors: as read_mesh.
+/// Returns the mesh called `path` in the scene: one in memory, or that file. Errors: as read_mesh.
 MeshFile scene_mesh(const Scene& scene, const std::string& path);
 
 /// Reads and checks a scene file; `overrides` are KEY=VALUE as given to --set, e.g. "time.duration=2",
 /// "body.flag.voxel_width=0.5", "body.0.voxel_width=0.5". Unknown keys are errors that name the nearest
 /// known key. Errors: file; input with file, line, column.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
-/// The same for a text; `file` is the name that messages carry and what paths are relative to.
+/// The same for a text; `file` is the name in messages, and paths are relative to it.
 Scene parse_scene(const std::string& text, const std::filesystem::path& file,
                   const std::vector<std::string>& overrides = {});
 

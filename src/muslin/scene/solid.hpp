@@ -1,4 +1,4 @@
-// What solid a mesh stands for.
+// Classifies the solid that a mesh represents.
 #pragma once
 
 #include "muslin/geometry/inspect.hpp"
@@ -7,7 +7,7 @@
 namespace muslin {
 
 enum class MeshKind {
-  solid,        ///< closed, and encloses a volume
+  solid,        ///< closed, encloses a volume
   holed_solid,  ///< open, but its holes are small against its area: the winding number closes them
   sheet,        ///< open, or closed around nothing
 };
@@ -17,7 +17,7 @@ enum class MeshKind {
 /// come to about 8 %.
 MeshKind kind_of(const Mesh& mesh, const MeshReport& report);
 
-/// The same mesh with every face turned around.
+/// Returns the mesh with every face reversed.
 Mesh flipped(Mesh mesh);
 
 }  // namespace muslin

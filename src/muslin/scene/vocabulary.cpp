@@ -18,7 +18,7 @@ std::vector<std::string> collider_keys(const std::vector<std::string>& more) {
   return joined({"shape", "name", "keyframes", "contact", "friction", "colour"}, more);
 }
 
-/// Of those that turn and may have mass: all but the plane.
+/// Returns the keys of colliders that rotate and may have mass: all but the plane.
 std::vector<std::string> moving_keys(const std::vector<std::string>& more) {
   return joined(collider_keys({"pivot", "density", "velocity", "angular_velocity"}), more);
 }

@@ -1,4 +1,4 @@
-// The words of the scene file: every table and its keys.
+// Lists the vocabulary of the scene file: every table and its keys.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct VocabularyTable {
 };
 const std::vector<VocabularyTable>& scene_vocabulary();
 
-/// The keys of one table of scene_vocabulary().
+/// Returns the keys of one table of scene_vocabulary().
 const std::vector<std::string>& known_keys(std::string_view table);
 
 }  // namespace muslin

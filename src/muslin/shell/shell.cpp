@@ -14,9 +14,9 @@
 namespace muslin {
 namespace {
 
-// A triangle this flat (twice its area over its longest edge squared) has no direction to bend in.
+// A triangle this flat (twice its area over its longest edge squared) has no bending direction.
 constexpr double flattest = 1e-9;
-// Below this length of its projection (of a unit vector) a direction says nothing about a face.
+// Below this length of its projection a unit vector defines no direction on a face.
 constexpr double shortest_projection = 1e-3;
 
 /// The side of a triangle from corner `corner` to the next.
@@ -87,8 +87,8 @@ class ShellBuilder {
     return warp.normalized();
   }
 
-  /// Where u grows fastest along the triangle: with the texture's edges U (columns) and those of the
-  /// triangle E, ∂x/∂u = E U⁻¹ (1, 0).
+  /// Returns the direction of steepest u in the triangle: with the texture's edges U (columns) and those of
+  /// the triangle E, ∂x/∂u = E U⁻¹ (1, 0).
   Vec3 warp_from_texture(std::size_t t, const Vec3& e1, const Vec3& e2, const Vec3& normal) const {
     const auto uv = uvs_of(t);
     const Vec2 u1 = uv[1] - uv[0], u2 = uv[2] - uv[0];
@@ -167,7 +167,7 @@ class ShellBuilder {
     hinge.area = shell_.areas[t1] + shell_.areas[t2];
     hinge.angle = hinge_angle(rest(hinge.vertices[0]), rest(hinge.vertices[1]), rest(hinge.vertices[2]),
                               rest(hinge.vertices[3]));
-    // What bends is across the edge: cos² of its angle with warp is sin² of that between edge and warp.
+    // The bending direction is across the edge: cos² of its angle with warp is sin² of that of the edge.
     const auto share = [&](std::size_t t) { return 1 - std::pow(edge.dot(warps_[t]) / hinge.length, 2); };
     hinge.warp_share =
         std::clamp((share(t1) * shell_.areas[t1] + share(t2) * shell_.areas[t2]) / hinge.area, 0.0, 1.0);

@@ -1,8 +1,8 @@
-// A triangle mesh as thin cloth: triangles with the directions of their threads, hinges between them.
+// Shell is a triangle mesh as thin cloth: triangles with their thread directions, and hinges between them.
 //
-// Threads run in two directions, warp and weft, at right angles in the cloth at rest. A triangle knows its
+// Threads run in two directions, warp and weft, at right angles in the cloth at rest. A triangle stores its
 // rest shape in these coordinates, so that F = [x₁−x₀, x₂−x₀] `inverse` is the 3 by 2 deformation gradient
-// whose columns are what became of a unit length of warp and of weft.
+// whose columns are the deformed unit vectors of warp and weft.
 #pragma once
 
 #include <array>
@@ -19,12 +19,12 @@ namespace muslin {
 using Mat2 = Eigen::Matrix2d;
 
 /// Two triangles that share the edge of vertices 0 and 1; vertices 2 and 3 are opposite to it.
-struct Hinge {  // no padding: models are told apart by its bytes
+struct Hinge {  // no padding: models are compared by its bytes
   std::array<int, 4> vertices{};
   double length = 0;      ///< of the edge at rest [m]
   double area = 0;        ///< of both triangles at rest [m²]
   double angle = 0;       ///< between the normals at rest, −π … π
-  double warp_share = 0;  ///< cos² of the angle between warp and the direction that bends, across the edge
+  double warp_share = 0;  ///< cos² of the angle between warp and the bending direction, across the edge
 };
 
 struct Shell {
@@ -36,14 +36,14 @@ struct Shell {
   std::vector<double> vertex_areas;  ///< #V, a third of each adjacent triangle at rest [m²]
   double area = 0;                   ///< at rest [m²]
   double mean_edge = 0;              ///< at rest [m]
-  std::size_t odd_faces = 0;  ///< triangles perpendicular to the warp given, so that it was chosen anew
+  std::size_t odd_faces = 0;         ///< triangles perpendicular to the given warp, which got another one
 
   std::size_t vertex_count() const { return vertex_areas.size(); }
 };
 
-/// How the threads lie on the rest shape.
+/// Thread directions on the rest shape.
 struct Weave {
-  /// Warp, projected onto every face. Without it warp is where the texture's u grows.
+  /// Warp, projected onto every face. Default: the direction of increasing texture u.
   std::optional<Vec3> warp;
 };
 
@@ -52,11 +52,11 @@ struct Weave {
 /// no polygon, and texture coordinates that are missing or without area where they are needed.
 Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave);
 
-/// The angle of a hinge: 0 if flat, positive if vertices 2 and 3 turn away from the normal
+/// Returns the angle of a hinge: 0 if flat, positive if vertices 2 and 3 turn away from the normal
 /// (x₁−x₀)×(x₂−x₀), −π … π.
 double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
 
-/// Largest singular value of F over all triangles: the largest stretch in any direction.
+/// Returns the largest singular value of F over all triangles: the largest stretch in any direction.
 double max_stretch(const Shell& shell, ConstVectors x);
 
 }  // namespace muslin

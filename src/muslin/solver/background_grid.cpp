@@ -73,7 +73,7 @@ BackgroundGrid::BackgroundGrid(ConstVectors points, std::span<const int> compone
     }
   }
 
-  // Where each point is; its fractions at once, its cell as soon as cells are numbered.
+  // Locate each point: its fractions now, its cell once cells are numbered.
   std::vector<Place> place(points.size()), cells;
   parallel_for(points.size(), 16384, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
@@ -99,7 +99,7 @@ BackgroundGrid::BackgroundGrid(ConstVectors points, std::span<const int> compone
     points_[p].cell = again ? points_[p - 1].cell : find(cells, place[p]);
   }
 
-  // The nodes that some point has a weight for.
+  // Nodes with a weight in some point.
   const auto corner = [&](const Place& cell, int n) {
     Place node = cell;
     const Frame& frame = frames[at(cell.component)];
@@ -131,7 +131,7 @@ BackgroundGrid::BackgroundGrid(ConstVectors points, std::span<const int> compone
       if (used[c] >> n & 1) nodes.push_back(corner(cells[c], n));
   sort_and_reduce(nodes);
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    int any = -1;  // stands for nodes without weight
+    int any = -1;  // substitute for nodes without weight
     for (int n = 0; n < cells_[c].count; ++n) {
       const int node = find(nodes, corner(cells[c], n));
       if (any < 0) any = node;

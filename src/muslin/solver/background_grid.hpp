@@ -1,4 +1,4 @@
-// A coarse grid behind scattered points: values at its nodes, trilinearly at the points.
+// BackgroundGrid interpolates values at the nodes of a coarse grid trilinearly at scattered points.
 //
 // Points belong to components, which share no nodes. The axes along which a component is thinner than half a
 // cell have a single node; along the others every occupied cell has two.
@@ -17,22 +17,22 @@ namespace muslin {
 
 class BackgroundGrid {
  public:
-  /// 1, 2, 4 or 8 nodes; bit a of the number of a node in the cell: at the upper end of axis a of those with
+  /// 1, 2, 4 or 8 nodes; bit a of a node's number in the cell is set at the upper end of the a-th axis with
   /// two nodes.
   struct Cell {
     int count = 1;
     std::array<int, 8> nodes{};
     std::array<int, 3> index{};  ///< along the axes with two nodes
-    std::array<int, 8> lower{};  ///< one lower along the axes of the bits of this; −1 if there is none
+    std::array<int, 8> lower{};  ///< neighbour lower along the axes of the index' bits; −1: none
   };
-  /// cell −1: the point takes no part. `t` by axis with two nodes, in units of 1/32768.
+  /// cell −1: the point is excluded. `t` by axis with two nodes, in units of 1/32768.
   struct Point {
     int cell = -1;
     std::array<std::uint16_t, 3> t{};
   };
 
   BackgroundGrid() = default;
-  /// `points` #P by 3; `components` #P, −1 for points that take no part; `spacings` by component.
+  /// `points` #P by 3; `components` #P, −1 for excluded points; `spacings` by component.
   BackgroundGrid(ConstVectors points, std::span<const int> components, std::span<const double> spacings);
 
   std::size_t node_count() const { return nodes_.size(); }
@@ -41,7 +41,7 @@ class BackgroundGrid {
   const std::vector<Cell>& cells() const { return cells_; }
   const Point& point(std::size_t p) const { return points_[p]; }
 
-  /// Weights of the nodes of the point's cell, which must be one; returns the cell.
+  /// Computes the weights of the nodes of the point's cell, which must exist; returns the cell.
   const Cell& weights(const Point& point, float (&w)[8]) const {
     const Cell& cell = cells_[static_cast<std::size_t>(point.cell)];
     w[0] = 1;
@@ -56,7 +56,7 @@ class BackgroundGrid {
     return cell;
   }
 
-  /// Says the same of both points in terms of one cell, where they lie in or on the border of one.
+  /// Expresses both points in one cell and returns true, if they lie in or on the border of a common one.
   bool meet(Point& a, Point& b) const;
 
   std::size_t bytes() const {
@@ -73,18 +73,18 @@ class BackgroundGrid {
   std::vector<int> node_components_;
 };
 
-/// Which blocks a matrix between the nodes of a grid has, where they are, and how to add to them. Adding half
-/// of a symmetric matrix is enough: `finish` adds its transpose.
+/// GridMatrix stores the blocks of a matrix between the nodes of a grid and their places. Adding half of a
+/// symmetric matrix is enough: `finish` adds its transpose.
 class GridMatrix {
  public:
   GridMatrix() = default;
-  /// `neighbours`: pairs of cells whose points are coupled, in any order and number; equal ones need not be
-  /// named.
+  /// `neighbours`: pairs of cells whose points are coupled, in any order and number; pairs of a cell with
+  /// itself are implied.
   GridMatrix(const BackgroundGrid& grid, std::vector<std::pair<int, int>> neighbours);
 
   const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
 
-  /// Blocks of the nodes of cell a (rows, eight each) with those of cell b.
+  /// Blocks between the nodes of cell a (rows, eight each) and those of cell b.
   using Table = std::array<int, 64>;
   const Table& table(int a) const { return tables_[static_cast<std::size_t>(a)]; }
   const Table& table(int a, int b) const;
@@ -117,8 +117,8 @@ void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const Backg
 void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& row,
                const BackgroundGrid::Point& column, const Block3& block, Float4* half);
 
-/// half += Pᵀ B P of blocks between one point and several: blocks of one cell after the other are summed with
-/// their weights before those of the row join.
+/// half += Pᵀ B P of blocks between one point and several: the blocks of each cell are first summed with
+/// their weights, then multiplied by those of the row.
 class RowOfBlocks {
  public:
   RowOfBlocks(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& row,

@@ -1,6 +1,6 @@
-// A symmetric matrix of 3×3 blocks between the nodes of a grid, in float. Rows are stored whole, as sweeps by
-// Gauss and Seidel read them; a block is three columns of four floats (the fourth 0), one vector register
-// each.
+// BlockMatrix is a symmetric matrix of 3×3 blocks between the nodes of a grid, in float. Rows are stored
+// completely, for Gauss-Seidel sweeps; a block is three columns of four floats (the fourth 0), one vector
+// register each.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace muslin {
 
-/// Which blocks there are: those of every pair, and the diagonal.
+/// The blocks of the matrix: those of every pair, and the diagonal.
 class BlockPattern {
  public:
   /// `pairs`: first and second node, in any order and number.
@@ -22,9 +22,9 @@ class BlockPattern {
   /// Row v has blocks first()[v] … first()[v+1] − 1, in ascending order of their columns.
   const std::vector<int>& first() const { return first_; }
   const std::vector<int>& columns() const { return columns_; }
-  /// The diagonal block of each row.
+  /// Returns the diagonal block of each row.
   const std::vector<int>& diagonal() const { return diagonal_; }
-  /// The block of row and column, which must be there.
+  /// Returns the block of row and column, which must exist.
   int find(int row, int column) const;
   std::size_t bytes() const {
     return (first_.capacity() + columns_.capacity() + diagonal_.capacity()) * sizeof(int);
@@ -36,10 +36,10 @@ class BlockPattern {
 
 class BlockMatrix {
  public:
-  /// A matrix of this pattern; all zero.
+  /// Resets to a zero matrix of this pattern.
   void reset(const BlockPattern& pattern);
 
-  /// The three columns of a block.
+  /// Returns the three columns of a block.
   Float4* block(int index) { return columns_.data() + 3 * static_cast<std::size_t>(index); }
   const Float4* block(int index) const { return columns_.data() + 3 * static_cast<std::size_t>(index); }
 

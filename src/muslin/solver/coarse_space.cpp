@@ -19,7 +19,7 @@ constexpr std::size_t most_parts = 4;
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-/// Which vertices belong together.
+/// Components of coupled vertices.
 class Components {
  public:
   explicit Components(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -36,7 +36,7 @@ class Components {
   std::vector<int> parent_;
 };
 
-/// body(earlier, later) for the positions of every coupling.
+/// Calls body(earlier, later) for the positions of every coupling.
 template <class Body>
 void for_each_coupling(const CouplingPattern& pattern, const Body& body) {
   for (const CouplingPattern::Block& block : pattern.blocks()) {
@@ -45,7 +45,7 @@ void for_each_coupling(const CouplingPattern& pattern, const Body& body) {
         body(l + (l < block.cut ? block.first : block.second), block.group * lanes + l);
   }
 }
-/// body(row, column) for the blocks beside the diagonal.
+/// Calls body(row, column) for the off-diagonal blocks.
 template <class Body>
 void for_each_pair(const SymmetricPattern& pattern, const Body& body) {
   for (std::size_t row = 0; row < pattern.vertex_count(); ++row)
@@ -81,7 +81,7 @@ CoarseSpace::CoarseSpace(const Linearization& h, ConstVectors rest_positions)
   for (const SymmetricMatrix* matrix : h.matrices())
     matrices_.push_back({matrix->shared_pattern(), matrix->first()});
 
-  // Bodies and the lengths of their edges.
+  // Find bodies and the lengths of their edges.
   const auto for_each_edge = [&](const auto& body) {
     for (const Set& set : sets_)
       for_each_coupling(*set.pattern,
@@ -173,7 +173,7 @@ bool CoarseSpace::fits(const Linearization& h, ConstVectors rest_positions) cons
          std::equal(matrices_.begin(), matrices_.end(), h.matrices().begin(), h.matrices().end(), same);
 }
 
-/// Which couplings go together: anew whenever other vertices are held.
+/// Groups the couplings into bundles; repeated whenever the held vertices change.
 void CoarseSpace::bundle() {
   int kinds = 0;
   for (const Set& set : sets_)
@@ -251,7 +251,7 @@ void CoarseSpace::add_masses(const Linearization& h, std::size_t part, Sums& sum
   }
 }
 
-/// The blocks beside the diagonal; that is in the diagonal of all.
+/// Adds the off-diagonal blocks; the diagonal ones are added with those of all potentials.
 void CoarseSpace::add_matrix(const SymmetricMatrix& matrix, std::size_t part, Float4* half) const {
   const SymmetricPattern& pattern = matrix.pattern();
   const auto [begin, end] = share(part, pattern.vertex_count());

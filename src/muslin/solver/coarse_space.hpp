@@ -1,13 +1,13 @@
-// Smooth motions, for which conjugate gradients alone take longer the finer a body is: corrections that are
-// interpolated from a coarse grid behind the rest positions,
+// CoarseSpace corrects smooth motions, on which conjugate gradients alone slow down with resolution, by
+// interpolation from a coarse grid over the rest positions,
 //
 //   t = Z B Zᵀ r,   B ≈ (Zᵀ H⁺ Z)⁻¹ by multigrid (Multilevel),
 //
 // H⁺ the Hessian without the negative t of its couplings, Z trilinear with a spacing of eight edges (of four
 // where block matrices couple the vertices). Couplings of one direction within one cell are summed first and
 // get the mean of their weights: Σ δᵢδᵢᵀ ⊗ Bᵢ ≈ (Σ δᵢδᵢᵀ) ⊗ (Σ Bᵢ) / n, exact where they are equal and
-// positive semidefinite always. Bodies are told apart by what couples their vertices; small ones take no
-// part. Of potentials that are neither couplings nor block matrices H⁺ has the diagonal blocks.
+// positive semidefinite always. Bodies are the components of coupled vertices; small ones are excluded. From
+// potentials that are neither couplings nor block matrices H⁺ has the diagonal blocks.
 #pragma once
 
 #include <memory>
@@ -23,13 +23,13 @@ class CoarseSpace {
   /// For linearisations with the patterns of this one; `rest_positions` #V by 3 [m].
   CoarseSpace(const Linearization& h, ConstVectors rest_positions);
   bool fits(const Linearization& h, ConstVectors rest_positions) const;
-  /// Whether there is anything to correct.
+  /// True if there is nothing to correct.
   bool empty() const { return multilevel_ == nullptr; }
 
-  /// Makes Zᵀ H⁺ Z.
+  /// Computes Zᵀ H⁺ Z.
   void assemble(const Linearization& h);
-  /// t = Z B Zᵀ r, zero on held vertices; returns rᵀt. Both by position in the order of elimination, the sets
-  /// of couplings one after the other; r in groups of 16 x, 16 y and 16 z.
+  /// t = Z B Zᵀ r, zero on held vertices; returns rᵀt. Both by position in the elimination order, the sets of
+  /// couplings one after the other; r in groups of 16 x, 16 y and 16 z.
   double correct(const float* r, Floats t);
 
   std::size_t bytes() const;
@@ -45,7 +45,7 @@ class CoarseSpace {
     std::shared_ptr<const SymmetricPattern> pattern;
     std::size_t first = 0;
   };
-  /// Of a loop over `count` items, what a part does: its items from `begin` to `end`.
+  /// The items `begin` … `end` − 1 that a part handles in a loop over `count` items.
   struct Share {
     std::size_t begin, end;
   };
@@ -63,7 +63,7 @@ class CoarseSpace {
     float count = 0;
     Square weights{};
   };
-  /// What the parts of a sum have in common room for.
+  /// Partial sums of a part.
   struct Sums {
     std::vector<Float4> half, right_side;
     std::vector<Block3> couplings;  // by bundle

@@ -55,7 +55,7 @@ MUSLIN_VECTOR_CODE void squared_accelerations(const double* __restrict g, const 
     ratios[i] = squares[i] / (m[i] * m[i]);
   }
 }
-/// Summed in lanes: by many additions that do not wait for one another.
+/// Sums in independent lanes, for instruction-level parallelism.
 MUSLIN_VECTOR_CODE double sum_of(const double* w, int n) {
   constexpr int lanes = 8;
   double sum[lanes] = {};
@@ -66,7 +66,7 @@ MUSLIN_VECTOR_CODE double sum_of(const double* w, int n) {
   return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-/// The same of maxima. What is not a number does not show.
+/// Lane-wise maximum; NaNs are ignored.
 MUSLIN_VECTOR_CODE double largest_of(const double* w, int n) {
   constexpr int lanes = 8;
   double largest[lanes] = {};
@@ -90,13 +90,13 @@ MUSLIN_VECTOR_CODE double largest_magnitude(const double* w, int n) {
   return *std::max_element(largest, largest + lanes);
 }
 
-/// The largest of many ratios, the first of equal ones, and the sum of the squares.
+/// The largest ratio, the first of equal ones, and the sum of the squares.
 struct Worst {
   double ratio = 0;
   int vertex = -1;
   double square = 0;
 
-  // A NaN must not hide: it compares false with everything.
+  // Detects NaN, which compares false with everything.
   void consider(double r, int v) {
     if (!(r <= ratio) && !std::isnan(ratio)) ratio = r, vertex = v;
   }
@@ -257,7 +257,7 @@ double IncrementalPotential::rounding_floor(ConstVectors x, double stiffest) con
         });
         return largest;
       }).value;
-  // Neighbours' couplings add up to no more than the diagonal block again.
+  // The neighbours' couplings sum to at most the diagonal block.
   return 2 * stiffest / (dt_ * dt_) * farthest * half_ulp;
 }
 

@@ -1,8 +1,8 @@
-// The function that one implicit step minimises over the free vertices:
+// IncrementalPotential is the function that one implicit step minimises over the free vertices:
 //
 //   E(x) = ½ (x − x̃)ᵀ M (x − x̃) + dt² Σᵢ Wᵢ(x)   [J s²]
 //
-// x̃ is the inertial prediction. Held vertices are not unknowns: their rows read zero.
+// x̃ is the inertial prediction. Held vertices are not unknowns: their rows are zero.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ class IncrementalPotential {
 
   struct Value {
     double value = 0;
-    double magnitude = 0;  ///< sum of the absolute values of the terms: what rounding is relative to
+    double magnitude = 0;  ///< sum of the absolute values of the terms, to which rounding is relative
 
     Value& operator+=(double term) {
       value += term;
@@ -36,11 +36,11 @@ class IncrementalPotential {
   Value value_and_gradient(ConstVectors x, Vectors g) const;
   /// y = ∂²E/∂x² p, zero on held vertices; p may move held vertices.
   void hessian_product(ConstVectors x, ConstVectors p, Vectors y) const;
-  /// Positive definite diagonal blocks of (an approximation of) the Hessian; mass alone on held vertices.
+  /// Positive definite diagonal blocks of (an approximation of) the Hessian; only mass on held vertices.
   void diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const;
   /// The Hessian at x, for the inner solver. x is kept by reference.
   void linearize(ConstVectors x, Linearization& into) const;
-  /// The largest safe t along d over all potentials.
+  /// Returns the largest safe t along d over all potentials.
   double max_step(ConstVectors x, ConstVectors d) const;
 
   struct Imbalance {
@@ -53,13 +53,13 @@ class IncrementalPotential {
   struct Evaluation {
     Value value;
     Imbalance imbalance;
-    /// What the value at x̃ is above that at x if all potentials are convex between them:
-    /// ½ (x − x̃)ᵀ M (x − x̃) − gᵀ(x − x̃) [J s²].
+    /// Lower bound of the value at x̃ minus that at x, if all potentials are convex between them: ½ (x − x̃)ᵀ
+    /// M (x − x̃) − gᵀ(x − x̃) [J s²].
     double prediction_above = 0;
   };
   Evaluation evaluate(ConstVectors x, Vectors g) const;
-  /// What of the imbalance rounding can cause: half a unit in the last place of every coordinate, carried
-  /// through the Hessian [m/s²]. Nothing below it can be asked for. `stiffest` is the largest ‖diagonal
+  /// Returns the part of the imbalance due to rounding: half a unit in the last place of every coordinate,
+  /// multiplied by the Hessian [m/s²]. Lower tolerances cannot be met. `stiffest` is the largest ‖diagonal
   /// block‖ / mass.
   double rounding_floor(ConstVectors x, double stiffest) const;
 

@@ -10,7 +10,7 @@ namespace muslin {
 namespace {
 
 /// A solve that takes more iterations uses the coarse space. An iteration with it costs three times as much
-/// where the factorisation knows the couplings, hardly more where block matrices are multiplied by.
+/// where the factorisation includes the couplings, hardly more where block matrices are multiplied.
 constexpr int patience_of_couplings = 40, patience_of_matrices = 6;
 
 double largest_entry(ConstVectors b) {
@@ -20,7 +20,7 @@ double largest_entry(ConstVectors b) {
   };
   return parallel_sum(b.size(), 8192, Largest{},
                       [&](std::size_t begin, std::size_t end) {
-                        // In lanes, which need not wait for each other.
+                        // Independent lanes.
                         constexpr std::size_t lanes = 12;
                         const double *const entries = b[begin].data(), *const last =
                                                                            entries + 3 * (end - begin);
@@ -118,8 +118,7 @@ LinearReport InnerSolver::solve(ConstVectors b, const LinearSettings& settings, 
         corrected ? system_.corrected_direction(alpha, beta) : system_.direction(alpha, beta);
     alpha = 0;
     ++report.iterations;
-    // H is of no use here, or its couplings are so far from definite that the factorisation grows without
-    // bound.
+    // H is unusable here, or its couplings are so indefinite that the factorisation grows without bound.
     const bool stop_at_negative = settings.negative_curvature == NegativeCurvature::stop;
     if (report.iterations == 1 && !(curvature > 0) && stop_at_negative && !projected_) {
       project();

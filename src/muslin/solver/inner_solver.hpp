@@ -1,6 +1,6 @@
-// The linear systems of a step in float: conjugate gradients on the linearised Hessian between the halves of
-// an incomplete factorisation, and from a coarse grid as well where they take long. What float cannot tell is
-// left to the caller's next iteration in double.
+// InnerSolver solves the linear systems of a step in float: conjugate gradients on the linearised Hessian
+// between the halves of an incomplete factorisation, with a coarse grid where they converge slowly. Errors of
+// float are corrected by the caller's next iteration in double.
 #pragma once
 
 #include <algorithm>
@@ -15,17 +15,17 @@ namespace muslin {
 
 class InnerSolver {
  public:
-  /// Begins a step: what is done depends on nothing before it.
+  /// Begins a step; results do not depend on earlier steps.
   void begin_step() {
     iterations_a_decade_ = 0;
     assembled_ = false;
   }
-  /// Linearises at x. x stays valid for as long as `solve` is called.
+  /// Linearises at x, which must stay valid while `solve` is called.
   void linearize(const IncrementalPotential& function, ConstVectors x);
 
-  /// Largest ‖diagonal block‖ / mass of a free vertex, without contact or of contact alone.
+  /// Returns the largest ‖diagonal block‖ / mass of a free vertex, without contact or of contact alone.
   double stiffest() const { return std::max(stiffest_, h_.stiffest_relative()); }
-  /// False where masses vanish beside stiffnesses in float: `solve` must not be used. Contact is capped in the
+  /// False if masses are lost beside stiffnesses in float: `solve` must not be used. Contact is capped in the
   /// factors and does not count here.
   bool fits_float() const { return stiffest_ <= float_limit; }
 
@@ -34,13 +34,13 @@ class InnerSolver {
 
   /// Solves H s = b for the Hessian linearised last, as conjugate_gradient does. `norm` receives √(bᵀP⁻¹b).
   /// Where the very first direction has negative curvature, H is replaced by its projection until the next
-  /// linearisation, unless NegativeCurvature::pass asks for H as it is.
+  /// linearisation, unless NegativeCurvature::pass is set.
   LinearReport solve(ConstVectors b, const LinearSettings& settings, Vectors s, double& norm);
 
   /// z = P⁻¹ b, P the incomplete factorisation.
   void precondition(ConstVectors b, Vectors z);
 
-  /// Replaces H by its projection until the next linearisation; false if it was so already.
+  /// Replaces H by its projection until the next linearisation; false if it was projected already.
   bool project();
 
   std::size_t bytes() const {

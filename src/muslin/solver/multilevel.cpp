@@ -17,7 +17,7 @@ Float4 operator*(const Block3& b, const Float4& v) { return b.x * v[0] + b.y * v
 
 enum class Part { earlier, later, others };
 
-/// A x in a row, of the columns before the diagonal, behind it, or both.
+/// Returns a row of A x over the columns before the diagonal, after it, or both.
 Float4 row_times(const BlockPattern& pattern, const BlockMatrix& matrix, std::size_t row, const Float4* x,
                  Part part) {
   Float4 sum = {0, 0, 0, 0}, further = {0, 0, 0, 0};
@@ -35,7 +35,7 @@ Float4 row_times(const BlockPattern& pattern, const BlockMatrix& matrix, std::si
   return sum + further;
 }
 
-/// Zero for the block of a node whose points are all held.
+/// Returns the inverse of a block; zero for a node whose points are all held.
 Block3 inverse(const Float4* a) {
   if (!(a[0][0] > 0)) return Block3{};
   Mat3 m;
@@ -105,7 +105,7 @@ void Multilevel::prepare() {
   }
   for (Eigen::Index i = 0; i < dense.rows(); ++i)
     if (!(dense(i, i) > 0)) dense(i, i) = 1;  // a node whose points are all held
-  // Rounding in float may have cost it its definiteness.
+  // Rounding in float may have destroyed definiteness.
   constexpr double rounding = 1e-6;
   dense.diagonal() *= 1 + rounding;
   direct_.compute(dense);
@@ -158,7 +158,7 @@ void Multilevel::solve(std::size_t l) {
     }
     return;
   }
-  // Forwards from zero: what comes later does not count yet, and is all that is left over.
+  // Forward sweep from zero: later columns do not contribute yet, and alone form the residual.
   for (std::size_t i = 0; i < count; ++i)
     x[i] = level.inverse[i] * (b[i] - row_times(pattern, level.matrix, i, x, Part::earlier));
   Level& coarser = levels_[l + 1];

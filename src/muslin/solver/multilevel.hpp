@@ -1,10 +1,10 @@
-// Multigrid on block matrices: an approximate inverse, symmetric and positive definite, whose quality does
-// not depend on how many unknowns there are.
+// Multilevel is multigrid on block matrices: an approximate inverse, symmetric and positive definite, whose
+// quality does not depend on the number of unknowns.
 //
-// One V-cycle: a Gauss-Seidel sweep forwards, the remaining residual summed to the nodes of a grid of twice
-// the spacing and solved for there in the same way, its correction interpolated back, a sweep backwards. The
-// coarser matrices are Pᵀ A P (Galerkin), P trilinear interpolation; the coarsest one is factorised
-// (Briggs, Henson, McCormick, A Multigrid Tutorial, 2000).
+// One V-cycle: a Gauss-Seidel sweep forwards, the remaining residual restricted to a grid of twice the
+// spacing and solved for there in the same way, its correction interpolated back, a sweep backwards. The
+// coarser matrices are Pᵀ A P (Galerkin), P trilinear interpolation; the coarsest one is factorised (Briggs,
+// Henson, McCormick, A Multigrid Tutorial, 2000).
 #pragma once
 
 #include <memory>
@@ -19,13 +19,13 @@ namespace muslin {
 class Multilevel {
  public:
   /// For matrices of this pattern between nodes at `points` (#P by 3) of `components` (#P). `spacings` by
-  /// component: of the first grid behind them.
+  /// component: of the first coarser grid.
   Multilevel(std::shared_ptr<const BlockPattern> pattern, ConstVectors points,
              std::span<const int> components, std::vector<double> spacings);
 
   /// The matrix to fill before `prepare`: symmetric and positive definite; of the pattern.
   BlockMatrix& matrix() { return levels_[0].matrix; }
-  /// Makes the coarser matrices.
+  /// Computes the coarser matrices.
   void prepare();
 
   /// By node, to fill before `solve`, and its result; three floats and a zero each.

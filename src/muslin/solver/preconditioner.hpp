@@ -1,4 +1,4 @@
-// Approximate inverses of the Hessian of the incremental potential.
+// Preconditioners are approximate inverses of the Hessian of the incremental potential.
 #pragma once
 
 #include <vector>

@@ -10,12 +10,12 @@
 namespace muslin {
 namespace {
 
-constexpr double no_weight = 1e-9;  // of what a contact moves along with a group
+constexpr double no_weight = 1e-9;  // net weight of a contact on its group
 constexpr int turns = 3;            // Newton iterations for the rotation
-/// Work is corrected by no more than this share of the motion: where it would take more, as in what has come
-/// to rest, the motion is no more than what is left of errors. And not where energy is hardly convex.
+/// Work is corrected by at most this share of the motion: if more is needed, as for bodies at rest, the
+/// motion consists of solver errors. No correction where the energy is hardly convex.
 constexpr double most_share = 0.05, least_curvature = 0.1;
-/// A group is at rest if it moves by less than this share of what loads could move it by.
+/// A group is at rest if it moves by less than this share of the displacement by loads.
 constexpr double resting = 0.1;
 
 /// Parts that move together, found by joining pairs.
@@ -40,7 +40,7 @@ std::size_t part_of(const StepProblem& problem, std::size_t v) {
   return problem.parts.empty() ? std::size_t{0} : static_cast<std::size_t>(problem.parts[v]);
 }
 
-/// Parts of the step's vertices, those that touch joined.
+/// Groups the parts of the step's vertices; touching parts are joined.
 Groups touching_groups(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard) {
   std::size_t parts = 1;
   for (std::size_t v = 0; v < problem.parts.size(); ++v)
@@ -59,7 +59,7 @@ Groups touching_groups(const StepProblem& problem, const IncrementalPotential& f
   return groups;
 }
 
-/// visit(group, stiffness) for each contact of a group with what is not of it, its stiffness against
+/// Calls visit(group, stiffness) for each contact of a group with its outside, with the stiffness against
 /// translations of the group times dt² [kg].
 template <class Visit>
 void for_each_outer_contact(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
@@ -84,8 +84,8 @@ void for_each_outer_contact(const StepProblem& problem, const IncrementalPotenti
 
 struct Group {
   double mass = 0;
-  bool held = false, outside = false;  ///< has held vertices; touches what is not of it
-  Mat3 stiffness = Mat3::Zero();       ///< of its contacts with what is outside
+  bool held = false, outside = false;  ///< has held vertices; touches something outside
+  Mat3 stiffness = Mat3::Zero();       ///< of its contacts with the outside
   Vec3 force = Vec3::Zero(), centre = Vec3::Zero(), torque = Vec3::Zero();
   Mat3 inertia = Mat3::Zero();
   Vec3 shift = Vec3::Zero();
@@ -95,13 +95,13 @@ struct Group {
 /// The motion of a group in a step, and the work that the residual has done on it.
 struct MovingGroup {
   double mass = 0;
-  bool held = false, outside = false;  ///< has held vertices; touches what is not of it
+  bool held = false, outside = false;  ///< has held vertices; touches something outside
   Vec3 centre = Vec3::Zero(), shift = Vec3::Zero(), turn = Vec3::Zero();
   Mat3 inertia = Mat3::Zero(), stiffness = Mat3::Zero();
   double work = 0, curvature = 0, inertial = 0;
-  double falls = 0;  ///< how far loads alone move it in a step [m]
+  double falls = 0;  ///< its displacement by loads alone in a step [m]
 
-  /// The share of its motion that is to be added to it.
+  /// Returns the share of its motion to add.
   double share() const {
     if (!(curvature >= least_curvature * inertial) || curvature == 0) return 0;
     if (inertial < mass * resting * resting * falls * falls) return 0;
@@ -152,7 +152,7 @@ void correct_rigid_motions(const StepProblem& problem, const IncrementalPotentia
     Group& group = all[groups.of(part_of(v))];
     return group.held || !(group.mass > 0) ? nullptr : &group;
   };
-  // The torque of everything but inertia stays what it is while the group turns as a whole.
+  // The torque of all forces but inertia is constant while the group rotates as a whole.
   for (std::size_t v = 0; v < count; ++v) {
     Group* const group = moves(v);
     if (!group || group->outside) continue;
@@ -221,7 +221,7 @@ void correct_work(const StepProblem& problem, const IncrementalPotential& functi
   }
   for (MovingGroup& group : all) {
     if (group.mass > 0) group.centre /= group.mass, group.shift /= group.mass;
-    // Along what it touches a group is free, against it it is not.
+    // A group is free along the surfaces it touches, but not against them.
     if (group.outside)
       group.shift = (Mat3::Identity() + group.stiffness / group.mass).ldlt().solve(group.shift).eval();
     if (group.held) group.shift.setZero();
@@ -265,7 +265,7 @@ void correct_work(const StepProblem& problem, const IncrementalPotential& functi
   }
   if (farthest == 0 || !(function.max_step(x, s) > 1)) return;
   if (guard && farthest > guard->slack()) {
-    // A part of it alone would change momenta.
+    // A partly limited motion would change momenta.
     std::vector<Vec3> limited = s;
     guard->limit(x, limited);
     if (limited != s) return;

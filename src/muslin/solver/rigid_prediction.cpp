@@ -20,7 +20,7 @@ Mat3 turn(const Vec3& angle) {
   return length > 0 ? Eigen::AngleAxisd(length, angle / length).toRotationMatrix() : Mat3::Identity();
 }
 
-/// Turns `arms` with the spin they have and gives them the velocities of the spin that they then have.
+/// Rotates `arms` freely by their spin and computes the velocities from their final spin.
 void turn_freely(const Four& arms, const Four& relative_velocities, double dt, Four& turned,
                  Four& velocities) {
   Vec3 momentum = Vec3::Zero();
@@ -39,7 +39,7 @@ void turn_freely(const Four& arms, const Four& relative_velocities, double dt, F
   }
 }
 
-/// The rotation that brings `from` nearest to `to`.
+/// Returns the rotation that brings `from` nearest to `to`.
 Mat3 nearest_rotation(const Four& from, const Four& to) {
   Mat3 product = Mat3::Zero();
   for (std::size_t i = 0; i < 4; ++i) product += to[i] * from[i].transpose();

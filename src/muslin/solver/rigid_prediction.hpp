@@ -1,16 +1,16 @@
-// Where a rigid body would be at the end of a step if nothing pushed it.
+// Predicts a rigid body at the end of a step without forces.
 //
-// The inertial prediction of a step moves every point straight on. For the four points of a rigid body
-// (geometry/affine_frame.hpp) that is a stretch, which the energy that keeps it rigid must undo: with it goes
-// the share θ² of the spin in a step of implicit Euler that turns it by θ, and most of the solver's work. So
-// these points are predicted by a rigid motion:
+// The inertial prediction of a step moves every point in a straight line. This stretches the four points of a
+// rigid body (geometry/affine_frame.hpp), which the affine body energy must undo; it costs the share θ² of
+// the spin in a step of implicit Euler that turns it by θ, and most of the solver's work. These points are
+// therefore predicted by a rigid motion:
 //
 //   implicit Euler   Turned by R = exp(dt ω½) about the centre that moves straight on, ω½ = J½⁻¹ L the
 //   angular
 //                    velocity in the middle of the step; the anchor is such that unpushed velocities are
 //                    those of ω₁ = (R J Rᵀ)⁻¹ L: angular momentum L stays what it is, as in Buss, Accurate
 //                    and Efficient Simulation of Rigid-Body Rotations (2000).
-//   BDF2             The rigid motion nearest to its prediction, which is that good already.
+//   BDF2             The rigid motion nearest to its prediction, which is accurate enough.
 //
 // docs/theory/rigid-bodies.md.
 #pragma once
@@ -21,7 +21,7 @@
 namespace muslin {
 
 /// Changes anchor and prediction of vertices first … first + 3, of equal masses, in the context of a step
-/// from `state`. Symplectic Euler's are left alone.
+/// from `state`. Those of symplectic Euler are unchanged.
 void predict_rigid(Integrator integrator, const State& state, std::size_t first, StepContext& context);
 
 }  // namespace muslin

@@ -165,7 +165,7 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
   if (!report.made()) return report;
   if (problem.guard) problem.guard->end(x);
 
-  // The oldest vectors make room for the newest.
+  // Reuses the oldest vectors for the newest.
   state.previous_velocities.resize(x.size());
   std::swap(state.velocities, state.previous_velocities);
   const bool explicit_step = settings.integrator == Integrator::symplectic_euler;

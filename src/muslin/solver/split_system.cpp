@@ -19,14 +19,14 @@ constexpr std::size_t grain = 64;  // groups
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-/// Lanes without a coupling read what happens to be there and multiply it by zero: it must be finite, also
-/// after a solve that has overflown.
+/// Lanes without a coupling read arbitrary values and multiply them by zero: these must be finite, also after
+/// a solve that overflowed.
 void clear(const FloatVectors& vectors) {
   for (float* each : {vectors.data().x, vectors.data().y, vectors.data().z})
     std::memset(each, 0, vectors.size() * sizeof(float));
 }
 
-/// The place of position i in a vector by group: x, then y and z `lanes` further on each.
+/// Returns the index of position i in a vector by group: x, then y and z at offsets of `lanes`.
 std::size_t place(std::size_t i) { return i / lanes * vector_size + i % lanes; }
 
 }  // namespace
@@ -76,9 +76,9 @@ double SplitSystem::backward(const Body& body) const {
   return sum;
 }
 
-/// body(vertex, position among all); −1 for an empty position. `by_vertex` is what will be read or written
-/// there: the order of elimination goes through it in as many strides as a level has vertices, which
-/// processors do not foresee.
+/// body(vertex, position among all); −1 for an empty position. `by_vertex` is the data accessed there, which
+/// is prefetched: the elimination order traverses it in as many strides as a level has vertices, which
+/// hardware prefetchers do not predict.
 template <class Value, class Body>
 void SplitSystem::for_each_vertex(const Value* by_vertex, const Body& body) const {
   constexpr std::size_t ahead = 64;
@@ -147,7 +147,7 @@ double SplitSystem::factor(Linearization& h) {
     });
   }
 
-  // M by position, for the neighbours: where the vectors will be.
+  // M by position, for the neighbours, in the memory of the vectors.
   float* const m = r_;
   std::memset(m, 0, 6 * positions * sizeof(float));
   const Floats m_upper = {m, m + positions, m + 2 * positions};

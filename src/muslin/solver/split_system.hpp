@@ -1,17 +1,17 @@
-// The Hessian between the halves of an incomplete factorisation, for conjugate gradients without a separate
-// preconditioner.
+// SplitSystem applies the Hessian between the halves of an incomplete factorisation, for conjugate gradients
+// without a separate preconditioner.
 //
-// H = L + A + Lᵀ + K in the order of elimination of a CouplingPattern: A the diagonal blocks, L the couplings
-// with earlier vertices, K whatever has no couplings. With D_v = A⁺_v − Σ B⁺ D_u⁻¹ B⁺ over the earlier
+// H = L + A + Lᵀ + K in the elimination order of a CouplingPattern: A the diagonal blocks, L the couplings
+// with earlier vertices, K the rest without couplings. With D_v = A⁺_v − Σ B⁺ D_u⁻¹ B⁺ over the earlier
 // neighbours u of v (A⁺ and B⁺ projected to positive semidefinite: the D of a diagonal incomplete
-// factorisation; Pommerell 1992, Saad 2003, § 10.3) and D = G Gᵀ, the matrix F = (D + L) G⁻ᵀ makes
-// F Fᵀ ≈ H, exactly so on a line. Since H = (D + L) + (D + Lᵀ) + (A − 2D) + K, the product with
+// factorisation; Pommerell 1992, Saad 2003, § 10.3) and D = G Gᵀ, the matrix F = (D + L) G⁻ᵀ makes F Fᵀ ≈ H,
+// exactly so on a line. Since H = (D + L) + (D + Lᵀ) + (A − 2D) + K, the product with
 //
 //   Ĥ = F⁻¹ H F⁻ᵀ,   Ĥ p = g + F⁻¹ ((A − D) t − u + K t),   t = F⁻ᵀ p,
 //
 // costs one sweep backwards (t, u = −Lᵀ t, g = Gᵀ t) and one forwards: hardly more than with H itself
-// (Eisenstat 1981). docs/theory/split-system.md has the derivation. Held vertices have G⁻¹ = 0 and stay
-// out.
+// (Eisenstat 1981). docs/theory/split-system.md has the derivation. Held vertices have G⁻¹ = 0 and are
+// excluded.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +25,7 @@
 
 namespace muslin {
 
-/// Everything belongs to the Linearization of the last call of `factor`, which must not change until the
-/// next.
+/// All calls refer to the Linearization of the last call of `factor`, which must not change until the next.
 class SplitSystem {
  public:
   /// Returns the largest ‖A⁺_v‖ / (mass and drag of v) over free vertices.
@@ -58,7 +57,7 @@ class SplitSystem {
   std::size_t bytes() const;
 
  private:
-  /// The part of one set of couplings: its first group among all.
+  /// One set of couplings and its first group among all.
   struct Part {
     const Couplings* couplings = nullptr;
     std::size_t first_group = 0;
@@ -78,7 +77,7 @@ class SplitSystem {
   std::vector<Part> parts_;
   std::size_t group_count_ = 0;
   Buffer<float> identity_, rest_;
-  // What identity_ and free_ were made from, and for which patterns: the same from step to step, as a rule.
+  // Sources of identity_ and free_, and their patterns: usually the same from step to step.
   std::vector<float> identity_by_vertex_;
   std::vector<std::uint8_t> fixed_by_vertex_;
   std::vector<std::shared_ptr<const CouplingPattern>> patterns_;

@@ -1,4 +1,4 @@
-// What tells one implicit integrator from another.
+// Computes the step context, in which the implicit integrators differ.
 //
 // With w_n = (x_n, v_n) both implicit Euler and BDF2 (variable steps, ω = h_n / h_{n−1}) read
 //

@@ -16,7 +16,7 @@ namespace plain {
 }  // namespace plain
 }  // namespace
 
-// Vector types, unlike loops, take the instruction set of where they are written: hence no function clones.
+// Vector types, unlike loops, use the instruction set of their scope: hence no function clones.
 #ifdef MUSLIN_BY_PROCESSOR
 #pragma GCC push_options
 #pragma GCC target("arch=x86-64-v3")

@@ -1,5 +1,5 @@
-// The arithmetic of SplitSystem on groups of 16 vertices, compiled for several instruction sets. All give the
-// same bits.
+// Kernels are the arithmetic of SplitSystem on groups of 16 vertices, compiled for several instruction sets.
+// All give the same bits.
 #pragma once
 
 #include <cstdint>
@@ -31,13 +31,13 @@ struct Sweep {
   const float* units = nullptr;
   PackedMatrices pivots;  ///< M, lower triangular
   PackedMatrices excess;  ///< A − D, D = (MᵀM)⁻¹ of the M that is stored
-  Floats flat;            ///< what neighbours read
+  Floats flat;            ///< read by neighbours
 };
 
 struct Diagonal {
   const float* identity = nullptr;      ///< by position
   const std::uint16_t* free = nullptr;  ///< by group, bit l: lane l has a vertex that is free to move
-  const float* rest = nullptr;          ///< by group, blocks that D has besides; null if there are none
+  const float* rest = nullptr;          ///< by group, further blocks in D; null if none
 };
 
 struct Kernels {
@@ -47,7 +47,7 @@ struct Kernels {
   /// r = F⁻¹ r; returns rᵀr.
   double (*solve_forward)(const Sweep& sweep, float* r);
   /// x += alpha p, p = r + beta p, flat = t = F⁻ᵀ p, c = g + M e with g = p + M u and e = (A − D) t − u, u
-  /// what the later neighbours' couplings make of t. Returns pᵀg + tᵀe = tᵀH t.
+  /// the product of the later neighbours' couplings with t. Returns pᵀg + tᵀe = tᵀH t.
   double (*direction)(const Sweep& sweep, float alpha, float beta, const float* r, float* x, float* p,
                       float* c);
   /// r −= alpha (g + F⁻¹ (e + further)) after `direction`; returns rᵀr. `further` by group, null if zero.
@@ -62,9 +62,9 @@ struct Kernels {
                                 float* p, float* c, Floats correction);
 };
 
-/// The best for this processor.
+/// Returns the best kernels for this processor.
 const Kernels& kernels();
-/// All that this processor can run, the plainest first: tests compare their bits.
+/// Returns all kernels that this processor can run, the most basic first: tests compare their bits.
 std::span<const Kernels* const> all_kernels();
 
 }  // namespace muslin::sweep_kernels

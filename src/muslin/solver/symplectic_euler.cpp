@@ -26,7 +26,7 @@ double mass_norm(const StepProblem& problem, ConstVectors d) {
   return std::sqrt(sum);
 }
 
-/// The highest angular frequency [1/s] at x, by power iteration from d.
+/// Returns the highest angular frequency [1/s] at x, by power iteration from d.
 double highest_frequency(const StepProblem& problem, ConstVectors x, std::vector<Vec3> d) {
   std::vector<Vec3> y(d.size());
   const double start = mass_norm(problem, d);

@@ -1,4 +1,4 @@
-// The explicit integrator.
+// solve_symplectic is the explicit integrator.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 namespace muslin {
 
 /// v_{n+1} = v_n + dt M⁻¹ f(x_n), x_{n+1} = x_n + dt v_{n+1}, into x. Not converged where the step is longer
-/// than the stable 2/ω_max: the curvature along the change of velocity, which the fastest growing mode soon
-/// rules, then exceeds 4/dt². The failure text names the stable step.
+/// than the stable 2/ω_max: the curvature along the change of velocity, soon dominated by the fastest growing
+/// mode, then exceeds 4/dt². The failure text names the stable step.
 StepReport solve_symplectic(const StepContext& context, const StepProblem& problem, const State& state,
                             std::vector<Vec3>& x);
 

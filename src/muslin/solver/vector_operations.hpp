@@ -1,4 +1,4 @@
-// Sums and updates over #V by 3 vectors; the same bits for any thread count.
+// Provides sums and updates of #V by 3 vectors with the same bits for any thread count.
 #pragma once
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t grain = 1024;
 
-/// The mean of two carried points.
+/// Returns the mean of two carried points.
 void carry_mean(const Embedding& from, int a, int b, Embedding& to, std::size_t at) {
   if (a == b) {
     to.vertices[at] = from.vertices[a];
@@ -33,7 +33,7 @@ void carry_mean(const Embedding& from, int a, int b, Embedding& to, std::size_t 
   }
 }
 
-/// The largest of value(i), 0 ≤ i < count.
+/// Returns the largest value(i), 0 ≤ i < count.
 template <class Value>
 double largest(std::size_t count, const Value& value) {
   std::vector<double> partial((count + grain - 1) / grain, 0);

@@ -1,7 +1,7 @@
-// The contour: marching squares or cubes on the lattice's samples of the distance field. The samples' values
-// never change, only their positions, so the topology is built once and every vertex is carried by the
-// lattice (Embedding). Closed, also where the solid ends exactly on the lattice's boundary.
-// Source: Lorensen and Cline, Marching Cubes, 1987; tables and rules in docs/theory/contour.md.
+// The contour is the result of marching squares or cubes on the lattice's samples of the distance field. The
+// samples' values are constant, only their positions change, so the topology is built once and every vertex
+// is carried by the lattice (Embedding). It is closed, also where the solid ends exactly on the lattice's
+// boundary. Source: Lorensen and Cline, Marching Cubes, 1987; tables and rules in docs/theory/contour.md.
 #pragma once
 
 #include <span>
@@ -29,13 +29,13 @@ struct Contour {
 };
 
 /// `solid` is the closed mesh the lattice was built from, `distance` its field. The mesh is a closed
-/// 2-manifold, each edge run once in either direction.
+/// 2-manifold, each edge traversed once in either direction.
 ///
-/// Cubes: features with no lattice vertex inside are lost, above all walls thinner than a voxel; the mesh is
-/// empty if that is all there is. Squares: the outline in the middle of the solid's thickness, extruded to
-/// its bounds; thin along the axis of the lattice's smallest extent, which must be one voxel. In either,
-/// what passes between samples shows in `Contour::distance`.
-/// Errors: input, if squares are asked of a lattice thicker than one voxel.
+/// Cubes: features with no lattice vertex inside are lost, in particular walls thinner than a voxel; the mesh
+/// is empty if there is nothing else. Squares: the outline in the middle of the solid's thickness, extruded
+/// to its bounds; thin along the axis of the lattice's smallest extent, which must be one voxel. In both
+/// cases `Contour::distance` measures the features missed between samples. Errors: input, if squares are
+/// requested for a lattice thicker than one voxel.
 Contour build_contour(const Lattice& lattice, const Mesh& solid, const SignedDistance& distance,
                       ContourMethod method);
 

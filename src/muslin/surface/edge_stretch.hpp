@@ -1,4 +1,4 @@
-// How much a surface is stretched, seen from its edges.
+// EdgeStretch measures the stretch of a surface along its edges.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace muslin {
 
-/// The edges of a mesh at rest: what stretch is measured on. Edges without length are left out.
+/// The edges of a mesh at rest, on which stretch is measured. Edges without length are left out.
 class EdgeStretch {
  public:
   explicit EdgeStretch(const Mesh& mesh);
@@ -20,7 +20,8 @@ class EdgeStretch {
   };
   const std::vector<Edge>& edges() const { return edges_; }
 
-  /// Per vertex, the largest stretch of its edges in percent of the rest length; compression counts as 0.
+  /// Returns, per vertex, the largest stretch of its edges in percent of the rest length; compression counts
+  /// as 0.
   std::vector<double> at(ConstVectors positions) const;
 
  private:

@@ -51,7 +51,7 @@ std::vector<Side> sorted_sides(const std::vector<PartTriangle>& triangles) {
 }
 
 /// Pairs the sides of one edge, each with one that runs the other way: first those of one part, then those
-/// of one cell, then what is left.
+/// of one cell, then the rest.
 template <class Visit>
 void pair_sides(std::span<const Side> group, const Visit& visit) {
   std::vector<char> paired(group.size(), 0);
@@ -121,7 +121,7 @@ Manifold make_manifold(const std::vector<PartTriangle>& triangles) {
     vertex_of[s] = vertex;
   }
 
-  // Two sheets may still share both ends of an edge: they part at a vertex in its middle.
+  // Two sheets may still share both ends of an edge: they are separated by a vertex in its middle.
   std::vector<int> middle(sides.size(), -1);
   const auto ends = [&](const std::array<int, 2>& pair) {
     return std::minmax({vertex_of[pair[0]], vertex_of[next_corner(pair[0])]});

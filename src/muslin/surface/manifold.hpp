@@ -1,5 +1,5 @@
-// Making a closed surface a manifold: where two sheets of it meet in an edge or a vertex, the edge or vertex
-// is doubled, so that every edge has exactly two triangles and every vertex one fan.
+// Makes a closed surface a manifold: where two sheets of it meet in an edge or a vertex, the edge or vertex
+// is duplicated, so that every edge has exactly two triangles and every vertex one fan.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace muslin {
 
-/// A triangle and where it comes from. Where more than two triangles meet in an edge, those of the same part
-/// belong together, then those of the same cell (part / 8).
+/// A triangle and its origin. Where more than two triangles meet in an edge, those of the same part belong
+/// together, then those of the same cell (part / 8).
 struct PartTriangle {
   std::array<int, 3> vertices{};
   std::int64_t part = 0;
@@ -24,7 +24,7 @@ struct Manifold {
   std::vector<std::array<int, 2>> sources;
 };
 
-/// `triangles` must be closed: each edge is run as often one way as the other.
+/// `triangles` must be closed: each edge is traversed equally often in both directions.
 Manifold make_manifold(const std::vector<PartTriangle>& triangles);
 
 }  // namespace muslin

@@ -1,5 +1,5 @@
-// Marching cubes and marching squares on a lattice's vertices: the raw triangles, before contour.cpp makes
-// them one manifold.
+// Computes marching cubes and marching squares on a lattice's vertices: the raw triangles, which contour.cpp
+// makes one manifold.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +27,13 @@ MarchedSurface march_squares(const Lattice& lattice, const SignedDistance& dista
 /// lattice's boundary keeps its outermost layer of samples.
 inline constexpr double inside_tolerance = 1e-6;
 
-/// Where the distance vanishes between `inside` and `outside`, as a fraction of the way, by regula falsi
-/// (Illinois). Stops after `evaluations` of the distance or within tolerance·|outside − inside|. Kept 1e-4
-/// away from both ends, so that no triangle is degenerate.
+/// Returns the zero of the distance between `inside` and `outside`, as a fraction of that segment, by regula
+/// falsi (Illinois). Stops after `evaluations` of the distance or within tolerance·|outside − inside|. The
+/// result is kept 1e-4 away from both ends, so that no triangle is degenerate.
 double crossing(const SignedDistance& distance, const Vec3& inside, const Vec3& outside, double value_inside,
                 double value_outside, int evaluations, double tolerance);
 
-/// Triangles whose vertices have names instead of numbers.
+/// Triangle whose vertices have names instead of numbers.
 struct NamedTriangle {
   std::array<std::uint64_t, 3> names{};
   std::int64_t part = 0;

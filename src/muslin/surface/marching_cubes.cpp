@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t row_grain = 64;
 
 /// Signed distances at the lattice's vertices. Farther than a voxel width from the surface only the sign is
-/// right: the distance changes by at most a width from one vertex of a row to the next, so most vertices of
-/// a thick solid need no look at the mesh.
+/// right: the distance changes by at most a width from one vertex of a row to the next, so most vertices of a
+/// thick solid need no distance query.
 std::vector<double> sample_vertices(const Lattice& lattice, const SignedDistance& distance) {
   std::vector<double> values(lattice.vertex_count());
   const RowIndex rows(lattice.vertices);

@@ -1,6 +1,6 @@
-// The 256 configurations of marching cubes, derived from one rule instead of written down: on every face of
-// the cube each run of inside corners is cut off by itself. The rule sees a face's own corners only, so two
-// cubes cut their common face alike and the surface has no cracks. See docs/theory/contour.md.
+// Derives the 256 configurations of marching cubes from one rule: on every face of the cube each run of
+// inside corners is cut off separately. The rule depends on the face's own corners only, so two cubes cut
+// their common face identically and the surface has no cracks. See docs/theory/contour.md.
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@ struct CubeEdge {
   int axis = 0;
 };
 CubeEdge cube_edge(int edge);
-/// The edge between two neighbouring corners.
+/// Returns the edge between two neighbouring corners.
 int edge_between(int corner, int other);
 
-/// The corners of face 2·axis + side, counterclockwise seen from outside.
+/// Returns the corners of face 2·axis + side, counterclockwise seen from outside.
 std::array<int, 4> face_corners(int face);
 
-/// The part of a polygon that is inside: each run of inside corners with the crossings before and after it,
+/// Returns the inside part of a polygon: each run of inside corners with the crossings before and after it,
 /// in the order of the polygon. Positions in the result: 2·i is corner i, 2·i + 1 the crossing between i and
 /// i + 1.
 std::vector<std::vector<int>> inside_runs(int inside_of_four);

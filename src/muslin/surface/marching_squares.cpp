@@ -148,7 +148,7 @@ class Squares {
     if (kind != 3) {
       to = lattice_.find_vertex(lattice_.vertices[column] + Vec3i::Unit(kind == 0 ? plane_.u : plane_.v));
       if (!inside_[from]) std::swap(from, to);
-      // Inside a thin solid the distance says little about the outline, so this may need many steps.
+      // Inside a thin solid the distance is a poor guide to the outline, so this may need many steps.
       t = crossing(distance_, in_plane(from), in_plane(to), values_[from], values_[to], 60, 1e-9);
     }
     const double s = (height - lattice_.rest_position(column)[plane_.thin]) / lattice_.width;

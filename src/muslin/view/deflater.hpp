@@ -1,4 +1,4 @@
-// Bytes made smaller as they come, in the format that browsers call "deflate" (RFC 1950).
+// Deflater compresses a stream of bytes in the format that browsers call "deflate" (RFC 1950).
 #pragma once
 
 #include <memory>
@@ -12,9 +12,9 @@ class Deflater {
   Deflater();
   ~Deflater();
   void append(std::string_view bytes);
-  /// What came out so far; some of what went in may still be inside.
+  /// Returns the size of the output so far; some input may still be buffered.
   std::size_t size() const;
-  /// Ends the stream and hands it over.
+  /// Ends the stream and returns it.
   std::string finish();
 
  private:
@@ -22,7 +22,7 @@ class Deflater {
   std::unique_ptr<Stream> stream_;
 };
 
-/// RFC 4648, with padding, without line ends.
+/// Encodes as in RFC 4648, with padding, without line ends.
 std::string base64(std::string_view bytes);
 
 }  // namespace muslin

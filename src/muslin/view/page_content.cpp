@@ -24,7 +24,7 @@ constexpr std::size_t most_pinned_points = 400;  ///< drawn of one pin
 
 Json triple(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-/// Three finite numbers of a scene that may have been written by another version, or nothing.
+/// Reads three finite numbers from a scene, perhaps of another version; nothing if invalid.
 Json triple_or_null(const Json& value) {
   const bool good = value.is_array() && value.size() == 3 &&
                     std::all_of(value.begin(), value.end(), [](const Json& x) { return x.is_number(); });
@@ -117,7 +117,7 @@ class Gatherer {
     content_.head["bodies"].push_back(std::move(body));
   }
 
-  /// A track of the vertices that a pin or force holds; evenly thinned where there are very many.
+  /// Adds a track of the vertices of a pin or force; evenly thinned if there are very many.
   int add_chosen(const Chosen& chosen) {
     std::vector<int> vertices;
     const std::size_t stride = (chosen.vertices.size() + most_pinned_points - 1) / most_pinned_points;
@@ -190,7 +190,7 @@ class Gatherer {
     content_.head["curves"] = std::move(curves);
   }
 
-  /// Boxes of all motions, and the largest stretch of each surface.
+  /// Computes the boxes of all motions, and the largest stretch of each surface.
   void measure(const Progress& progress) {
     std::vector<Box> boxes(content_.tracks.size());
     std::vector<double> largest(content_.tracks.size(), 0.0);

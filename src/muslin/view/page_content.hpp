@@ -1,4 +1,4 @@
-// What a page shows of a run, gathered once: points that move, surfaces on them, pins, forces, curves.
+// PageContent gathers the data of a run for a page: moving points, surfaces on them, pins, forces, curves.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace muslin {
 
-/// Points that move: all or some of one of the run's caches.
+/// Moving points: all or some of one of the run's caches.
 struct PageTrack {
   enum class Source { skin, contour, lattice } source = Source::skin;
   int body = 0;
   bool all = true;
-  std::vector<int> picked;  ///< otherwise: which points of the cache
+  std::vector<int> picked;  ///< otherwise: the selected points of the cache
   std::size_t count = 0;
   Vec3 low = Vec3::Zero(), size = Vec3::Zero();  ///< the box of their whole motion [m]
 
@@ -27,7 +27,7 @@ struct PageTrack {
 struct PageContent {
   nlohmann::ordered_json head;    ///< describes everything; arrays by their place in `arrays`
   std::string arrays;             ///< numbers, little-endian, each array at a multiple of 4
-  std::vector<PageTrack> tracks;  ///< in the order in which frames hold them
+  std::vector<PageTrack> tracks;  ///< in their order in a frame
 };
 
 /// Errors: input, if a position is not finite.

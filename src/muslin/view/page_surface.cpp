@@ -12,7 +12,7 @@
 namespace muslin {
 
 PageSurface page_surface(const Mesh& mesh) {
-  // The pattern of the ray-traced pictures, so that checks lie on the cloth alike.
+  // Same pattern as in the ray-traced pictures.
   const Surface surface = make_surface(mesh, fabric_look(Vec3::Zero()));
   const SmoothingGroups groups =
       smoothing_groups(surface.triangles, surface.rest_positions, surface.crease_angle);

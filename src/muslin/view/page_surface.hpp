@@ -1,4 +1,4 @@
-// A surface as a page draws it.
+// PageSurface is a surface prepared for drawing on a page.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace muslin {
 struct PageSurface {
   std::vector<std::uint32_t> triangles;  ///< 3 × #T drawn vertices
   std::vector<std::uint32_t> points;     ///< #D, the point that moves each drawn vertex
-  std::vector<std::uint32_t> normals;    ///< #D, which of the smooth normals it has
+  std::vector<std::uint32_t> normals;    ///< #D, index of its smooth normal
   std::size_t normal_count = 0;
   std::vector<float> pattern;       ///< 2 × #D places in the pattern [m]
   std::vector<std::uint32_t> ends;  ///< 2 × #E points: edges of the polygons
@@ -23,7 +23,7 @@ struct PageSurface {
 
 PageSurface page_surface(const Mesh& mesh);
 
-/// The outside of a lattice: the faces of its voxels that lie between none and one, turned outwards.
+/// The outside of a lattice: the voxel faces with one voxel, facing outward.
 struct LatticeOutside {
   Mesh mesh;
   std::vector<int> vertices;  ///< of the lattice, of each vertex of the mesh; ascending

@@ -11,7 +11,7 @@ using Word = std::uint16_t;
 
 constexpr double steps = 65535;
 
-/// Signs folded in, so that small differences of either sign have a high byte of zero.
+/// Folds in the sign, so that small differences of either sign have a high byte of zero.
 Word folded(Word difference) {
   const auto value = static_cast<std::int16_t>(difference);
   return static_cast<Word>(static_cast<Word>(difference << 1) ^ static_cast<Word>(value < 0 ? 0xffff : 0));

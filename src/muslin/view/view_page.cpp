@@ -41,7 +41,7 @@ std::string escaped_for_html(const std::string& text) {
   return safe;
 }
 
-/// JSON that no text in it can end: inside a script element only "<" could.
+/// Returns JSON that cannot end its script element: "<" is escaped.
 std::string escaped_for_script(const Json& json) {
   std::string safe;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
@@ -53,7 +53,7 @@ std::string escaped_for_script(const Json& json) {
   return safe;
 }
 
-/// Every stride-th frame, and the last.
+/// Returns every stride-th frame, and the last.
 std::vector<int> chosen_frames(int count, int stride) {
   std::vector<int> frames;
   for (int frame = 0; frame < count; frame += stride) frames.push_back(frame);
@@ -61,7 +61,7 @@ std::vector<int> chosen_frames(int count, int stride) {
   return frames;
 }
 
-/// The arrays and the frames, packed; or how far it came before it grew too large.
+/// The packed arrays and frames; or the share of frames reached before the size limit.
 struct Packed {
   std::optional<std::string> data;
   double share = 1;  ///< of the frames
@@ -95,7 +95,7 @@ struct Page {
   std::vector<std::string> notes;
 };
 
-/// How many packed bytes the page has room for beside its own text and the description of the run.
+/// Returns the number of packed bytes that fit beside the page's own text and the description of the run.
 std::uint64_t room_for(const PageContent& content, int frames, std::uint64_t largest_page) {
   constexpr std::uint64_t notes = 1000, digits_of_a_frame = 11;
   const std::uint64_t text = page_template().size() + escaped_for_script(content.head).size() + notes +
@@ -103,7 +103,7 @@ std::uint64_t room_for(const PageContent& content, int frames, std::uint64_t lar
   return largest_page > text ? (largest_page - text) / 4 * 3 : 0;  // base64
 }
 
-/// As much of the run as fits.
+/// Returns as much of the run as fits.
 Page fitting_page(const RunReader& run, std::uint64_t largest, const std::string& limit,
                   const Progress& progress) {
   const int count = run.frame_count();

@@ -1,4 +1,4 @@
-// One HTML page that plays a run in a browser, with everything it needs inside.
+// Writes one self-contained HTML page that plays a run in a browser.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 namespace muslin {
 
 struct ViewOptions {
-  /// The page is kept below this. Too large a run first leaves contours and lattices out, then frames.
+  /// Size limit of the page. A run too large omits first contours and lattices, then frames.
   std::uint64_t largest_bytes = 16'000'000;
 };
 
 struct ViewReport {
   std::uint64_t bytes = 0;         ///< of the page
   int frames = 0;                  ///< shown
-  std::vector<std::string> notes;  ///< sentences about what was left out; the page says the same
+  std::vector<std::string> notes;  ///< sentences on omitted data, also shown on the page
 };
 
-/// Writes the page; it appears when it is complete. docs/guide/viewer.md says what it shows and
-/// docs/adr/viewer-page.md what is in the file. Errors: input, if the run has no frame or a position in it is
-/// not finite; usage, if not even two frames fit into largest_bytes; file.
+/// Writes the page; it appears when it is complete. docs/guide/viewer.md describes the page and
+/// docs/adr/viewer-page.md the file. Errors: input, if the run has no frame or a position in it is not
+/// finite; usage, if not even two frames fit into largest_bytes; file.
 ViewReport write_view(const RunReader& run, const std::filesystem::path& file,
                       const ViewOptions& options = {}, const Progress& progress = {});
 
