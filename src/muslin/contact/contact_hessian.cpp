@@ -101,13 +101,15 @@ void ContactHessian::add_hessian_product(ConstVectors /*q*/, ConstVectors p, Vec
 
 void ContactHessian::linearize(ConstVectors /*q*/, Linearization& into, std::size_t first) const {
   RelativeStiffness& stiffness = into.relative_stiffness(first, vertex_offsets_.size() - 1);
+  const std::uint8_t* fixed = into.fixed() + first;
   std::vector<RelativeStiffness::Weight> weights;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     weights.clear();
     for (int k = row_offsets_[r]; k < row_offsets_[r + 1]; ++k) {
       const Entry& e = by_row_[static_cast<std::size_t>(k)];
-      weights.push_back({e.index, static_cast<float>(e.weight)});
+      if (fixed[e.index] == 0) weights.push_back({e.index, static_cast<float>(e.weight)});
     }
+    if (weights.empty()) continue;
     stiffness.add(rows_[r].normal, into.scale() * rows_[r].a, into.scale() * rows_[r].b, weights);
   }
 }
