@@ -20,7 +20,7 @@ def large_flag(**changes) -> muslin.Simulation:
 
 
 def test_python_runs_while_a_frame_is_advanced():
-    simulation = large_flag(time={"duration": 1, "frame_rate": 2, "steps_per_frame": 40})
+    simulation = large_flag(time={"duration": 1, "frame_rate": 2, "steps_per_frame": 240})
     simulation.step()  # warm up
     counted = 0
     done = threading.Event()
