@@ -122,6 +122,15 @@ void run(benchmark::State& state, Settings settings) {
   set_thread_count(0);
 }
 
+/// Counts the least, the median and the most of an even number of values.
+void note_spread(benchmark::State& state, const std::string& name, std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  state.counters[name + "_least"] = values.front();
+  state.counters[name + "_median"] = (values[half - 1] + values[half]) / 2;
+  state.counters[name + "_most"] = values.back();
+}
+
 /// Contact goes other ways for other last bits. Eight drops that begin micrometres apart show how much that
 /// changes stretch and worst frames.
 void spread(benchmark::State& state, int n) {
@@ -145,15 +154,9 @@ void spread(benchmark::State& state, int n) {
       }
     }
   }
-  for (auto* values : {&stretch, &worst, &average}) std::sort(values->begin(), values->end());
-  const auto note = [&](const std::string& name, const std::vector<double>& values) {
-    state.counters[name + "_least"] = values.front();
-    state.counters[name + "_median"] = (values[starts / 2 - 1] + values[starts / 2]) / 2;
-    state.counters[name + "_most"] = values.back();
-  };
-  note("stretch", stretch);
-  note("worst", worst);
-  note("average", average);
+  note_spread(state, "stretch", stretch);
+  note_spread(state, "worst", worst);
+  note_spread(state, "average", average);
   state.counters["crossings"] = static_cast<double>(crossings);
   set_thread_count(0);
 }
@@ -182,7 +185,7 @@ double distance(const std::vector<std::vector<Vec3>>& a, const std::vector<std::
   return largest;
 }
 
-/// How far drops are from the same with every step solved to 1e-5, four steps a frame in both: until the first
+/// Measures the distance of drops to those with every step solved to 1e-5, four steps a frame: until the first
 /// folds and until two frames later, when what differs grows by itself; of eight starts micrometres apart.
 void accuracy(benchmark::State& state, int n, Effort effort) {
   set_thread_count(1);
@@ -201,14 +204,8 @@ void accuracy(benchmark::State& state, int n, Effort effort) {
       after.push_back(distance(a, b, compared));
     }
   }
-  for (auto* values : {&before, &after}) std::sort(values->begin(), values->end());
-  const auto note = [&](const std::string& name, const std::vector<double>& values) {
-    state.counters[name + "_least"] = values.front();
-    state.counters[name + "_median"] = (values[starts / 2 - 1] + values[starts / 2]) / 2;
-    state.counters[name + "_most"] = values.back();
-  };
-  note("mm_until_folds", before);
-  note("mm_after", after);
+  note_spread(state, "mm_until_folds", before);
+  note_spread(state, "mm_after", after);
   state.counters["reference_s"] = reference_seconds;
   set_thread_count(0);
 }
