@@ -25,7 +25,7 @@ class Experiment {
   void level_sheet(const std::string& file, double x, double z, int cells) const {
     level_sheet(file, x, z, cells, cells);
   }
-  /// The same with `cells_x` by `cells_z` squares; vertex i + k (cells_x + 1).
+  /// Writes a sheet of `cells_x` by `cells_z` squares; vertex i + k (cells_x + 1).
   void level_sheet(const std::string& file, double x, double z, int cells_x, int cells_z) const;
   /// Writes a ball about the origin [m]: `rings` rows of polygons from pole to pole, `segments` in each.
   void ball(const std::string& file, double radius, int segments, int rings) const;

@@ -274,7 +274,7 @@ std::vector<int> by_features(std::span<const ContactPair> pairs, std::vector<int
   return sorted;
 }
 
-/// What two features touch with.
+/// Identifies a contact by the points that have weight in it.
 struct TouchingPoints {
   int first_size;
   std::array<int, 4> points;

@@ -208,7 +208,7 @@ class ContactBuilder {
   void add_mesh(const Body& body, const Triangulation& cut, const ContactBody& contact) {
     const int first = static_cast<int>(rest_.size());
     for (std::size_t p = 0; p < body.skin.size(); ++p) {
-      // The same vertex may occur twice, with weight 0.
+      // A vertex may occur twice, with weight 0.
       for (std::size_t s = 0; s < 8; ++s) {
         if (body.skin.weights[p][s] == 0) continue;
         entries_.push_back({body.first_vertex + body.skin.vertices[p][s], body.skin.weights[p][s]});

@@ -206,7 +206,7 @@ MeshFile scene_mesh(const Scene& scene, const std::string& path);
 /// "body.flag.voxel_width=0.5", "body.0.voxel_width=0.5". Unknown keys are errors that name the nearest
 /// known key. Errors: file; input with file, line, column.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
-/// The same for a text; `file` is the name in messages, and paths are relative to it.
+/// Parses a scene from a text; `file` is the name in messages, and paths are relative to it.
 Scene parse_scene(const std::string& text, const std::filesystem::path& file,
                   const std::vector<std::string>& overrides = {});
 

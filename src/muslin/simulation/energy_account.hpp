@@ -24,9 +24,9 @@ inline bool is_stored(EnergyRole role) { return role == EnergyRole::elastic || r
 struct ActingPotential {
   EnergyRole role = EnergyRole::elastic;
   const Potential* potential = nullptr;
-  /// Of roles that store energy: what it stores at the beginning of the step [J].
+  /// Energy stored at the beginning of the step, 0 of roles that store none [J].
   double before = 0;
-  /// What it stores at the end [J], where that is not its value there: contact lags some of its parts.
+  /// Energy stored at the end, if it differs from the value of the potential: contact lags some parts [J].
   std::optional<double> after = std::nullopt;
 };
 
@@ -50,7 +50,7 @@ struct EnergyFlow {
   std::vector<double> stored;  ///< by each of the acts at the end; 0 of roles that store nothing
 };
 
-/// The flow of one step.
+/// Returns the flow of one step.
 EnergyFlow energy_flow(const SolvedStep& step);
 
 double kinetic_energy(std::span<const double> masses, ConstVectors velocities);  ///< ½ Σ m |v|² [J]

@@ -13,8 +13,8 @@ constexpr double stable_steps = 150;
 /// The longest step of a rigid body in single precision [s]; its stiffness is that of build_materials.cpp.
 constexpr double longest_rigid = 1.0 / 16;
 
-/// Rigid bodies bend nowhere: how far one falls in a step matters beside what moves with it, however small it is
-/// itself.
+/// A rigid body does not bend, so that its fall in a step matters relative to the largest moving body, not to its
+/// own size.
 void give_rigid_bodies_the_largest_size(const Model& model, ModelParts& parts) {
   double largest = 0;
   const auto part_of = [&](const Body& body) {

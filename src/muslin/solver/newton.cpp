@@ -20,7 +20,7 @@ constexpr double slope_share = 0.9;  // approximate Wolfe: the slope must have r
 constexpr double rounding = 1e-12;   // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-8;
 constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-4;
-/// Of shells: this share of the tolerance, within bounds. Looser solves let small buckles go other ways.
+/// Shells take this share of the tolerance, within bounds. Looser solves let small buckles go other ways.
 constexpr double forcing_share = 0.25, tightest_of_shells = 0.05, loosest_of_shells = 0.2;
 /// A step that has not converged by then is tried in halves, or taken and said not to have.
 constexpr int max_iterations = 30, max_exact_iterations = 300;

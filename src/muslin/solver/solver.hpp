@@ -60,8 +60,8 @@ struct StepProblem {
   std::span<const int> parts = {};
   std::span<const double> accelerations = {};  ///< by part, root mean square due to loads [m/s²]
   std::span<const double> edges = {};          ///< by part, typical distance of neighbours [m]
-  /// Linear systems in which masses vanish beside stiffnesses in float are solved in double, slowly. If false,
-  /// such a step ends without an iteration, not converged: shorter steps may fit float.
+  /// True: linear systems in which float loses the masses beside the stiffnesses are solved in double, slowly.
+  /// False: a step that meets such a system ends there, not converged; shorter steps may fit float.
   bool in_double = true;
 };
 
