@@ -5,8 +5,14 @@
 // spacing and solved for there in the same way, its correction interpolated back, a sweep backwards. The
 // coarser matrices are Pᵀ A P (Galerkin), P trilinear interpolation; the coarsest one is factorised (Briggs,
 // Henson, McCormick, A Multigrid Tutorial, 2000).
+//
+// Chunks of nodes are swept side by side. A = D + L + Lᵀ + O, D + L within chunks and O between them: a sweep
+// inverts M = D + Λ + L with Λᵢ = ½ Σⱼ ‖Oᵢⱼ‖ I. M + Mᵀ − A = D + 2Λ − O is positive definite, hence sweeps
+// converge for any number of chunks (Baker, Falgout, Kolev, Yang, Multigrid smoothers for ultraparallel
+// computing, 2011).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -41,13 +47,17 @@ class Multilevel {
   struct Level {
     std::shared_ptr<const BlockPattern> pattern;
     BlockMatrix matrix;
-    std::vector<Block3> inverse;  // of the diagonal blocks
-    std::vector<Float4> b, x;
+    std::vector<std::array<int, 2>> inside;  // by row: its entries within the chunk, from and to
+    std::vector<float> added;                // Λ
+    std::vector<Block3> inverse;             // of D + Λ
+    std::vector<Float4> b, x, before;        // x before a sweep
     BackgroundGrid grid;  // behind it
     GridMatrix coarser;
     std::vector<Float4> half;  // of the coarser matrix
   };
+  enum class Direction { forward, backward };
   void solve(std::size_t level);
+  static void sweep(Level& level, Direction direction);
   void make_coarser_matrix(std::size_t level);
 
   std::vector<Level> levels_;
