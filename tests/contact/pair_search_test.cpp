@@ -361,7 +361,7 @@ TEST(ContactSurface, OwnsEachFeatureOnce) {
   EXPECT_EQ(std::count(edges.begin(), edges.end(), 1), static_cast<std::ptrdiff_t>(edges.size()));
   // 11 × 12 grid: 10·12 + 11·11 + 10·11 edges, and the segment.
   EXPECT_EQ(edges.size(), 120U + 121U + 110U + 1U);
-  EXPECT_EQ(scene.surface->triangles_at_edge(static_cast<int>(edges.size()) - 1), 1);
+  EXPECT_EQ(scene.surface->triangles_at_edge(static_cast<int>(edges.size()) - 1).size(), 1U);
 }
 
 TEST(ContactSurface, RefusesNonsense) {

@@ -23,6 +23,7 @@ struct Terms {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> any(-1, 1);
     stiffness.reset(first, vertices);
+    stiffness.resize(static_cast<std::size_t>(count), 4 * static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       const Vec3 n = Vec3(any(random), any(random), any(random)).normalized();
       const double along = 5 + any(random), across = 1 + any(random);
@@ -35,7 +36,7 @@ struct Terms {
         weights.push_back({v, static_cast<float>(w)});
         a.block<3, 3>(0, 3 * v) = static_cast<double>(static_cast<float>(w)) * Mat3::Identity();
       }
-      stiffness.add(n, along, across, weights);
+      stiffness.set(static_cast<std::size_t>(i), 4 * static_cast<std::size_t>(i), n, along, across, weights);
       const Mat3 block = across * Mat3::Identity() + (along - across) * n * n.transpose();
       dense += a.transpose() * block * a;
     }

@@ -36,9 +36,10 @@ class Presses : public Potential {
   void add_diagonal_blocks(ConstVectors, std::span<Mat3>) const override {}
   void linearize(ConstVectors, Linearization& into, std::size_t first) const override {
     RelativeStiffness& k = into.relative_stiffness(first, static_cast<std::size_t>(count_));
-    for (const Pair& pair : pairs_) {
-      const RelativeStiffness::Weight weights[] = {{pair.a, 1}, {pair.b, -1}};
-      k.add(pair.normal, into.scale() * stiffness_, 0, weights);
+    k.resize(pairs_.size(), 2 * pairs_.size());
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const RelativeStiffness::Weight weights[] = {{pairs_[i].a, 1}, {pairs_[i].b, -1}};
+      k.set(i, 2 * i, pairs_[i].normal, into.scale() * stiffness_, 0, weights);
     }
   }
 

@@ -6,12 +6,14 @@
 
 #include "muslin/contact/intersections.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/parallel.hpp"
 #include "muslin/core/stopwatch.hpp"
 #include "muslin/potential/stopping_time.hpp"
 
 namespace muslin {
 namespace {
 
+constexpr std::size_t grain = 4096;
 /// Boxes of candidates are wider than the motion by this share of d̂.
 constexpr double margin_share = 0.5;
 /// If at most this share of the points leaves its boxes, only their candidates are updated.
@@ -131,6 +133,20 @@ void ContactGuard::measure(ConstVectors q) {
   distances_.update(x_);
 }
 
+/// Sets outside_ where `inside` is false of a point and its box; returns the number of such points.
+template <class Inside>
+std::size_t ContactGuard::find_outside(const Inside& inside) {
+  outside_.resize(x_.size());
+  return parallel_sum(x_.size(), grain, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t p = begin; p < end; ++p) {
+      outside_[p] = inside(p, candidates_.boxes().end(p)) ? 0 : 1;
+      count += outside_[p];
+    }
+    return count;
+  });
+}
+
 /// Ensures that all pairs are known for the motion from q to q + d, and for vertices pushed aside by held
 /// vertices, which move about as far as those.
 void ContactGuard::cover(ConstVectors q, ConstVectors d) {
@@ -140,18 +156,15 @@ void ContactGuard::cover(ConstVectors q, ConstVectors d) {
   reach_ = margin_ + pushed_share * push;
   model_->map->apply(q, x_);
   model_->map->apply(d, to_);
-  for (std::size_t p = 0; p < x_.size(); ++p) to_[p] += x_[p];
+  parallel_for(x_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) to_[p] += x_[p];
+  });
   if (memory_.begin.empty()) return find_candidates(x_, to_, reach_);
-  outside_.resize(x_.size());
-  std::size_t count = 0;
-  for (std::size_t p = 0; p < x_.size(); ++p) {
-    const PointBox& box = candidates_.boxes().end(p);
-    const double pushed = reach_ - margin_;
-    const bool inside = (x_[p].cwiseMin(to_[p]).array() - pushed >= box.lower.array()).all() &&
-                        (x_[p].cwiseMax(to_[p]).array() + pushed <= box.upper.array()).all();
-    outside_[p] = inside ? 0 : 1;
-    count += outside_[p];
-  }
+  const double pushed = reach_ - margin_;
+  const std::size_t count = find_outside([&](std::size_t p, const PointBox& box) {
+    return (x_[p].cwiseMin(to_[p]).array() - pushed >= box.lower.array()).all() &&
+           (x_[p].cwiseMax(to_[p]).array() + pushed <= box.upper.array()).all();
+  });
   if (static_cast<double>(count) > renewed_share * static_cast<double>(x_.size()))
     return find_candidates(x_, to_, reach_);
   if (count > 0) renew();
@@ -170,14 +183,12 @@ void ContactGuard::renew() {
 /// one; their candidates are then updated.
 bool ContactGuard::renew_stopped(ConstVectors d) {
   model_->map->apply(d, to_);
-  bool any = false;
-  for (std::size_t p = 0; p < x_.size(); ++p) {
+  const std::size_t count = find_outside([&](std::size_t p, const PointBox& box) {
     to_[p] += x_[p];
-    outside_[p] = candidates_.boxes().end(p).contains(to_[p]) ? 0 : 1;
-    any |= outside_[p] != 0;
-  }
-  if (any) renew();
-  return any;
+    return box.contains(to_[p]);
+  });
+  if (count > 0) renew();
+  return count > 0;
 }
 
 /// Clears memory_ if it does not match the candidates, since a resumed run finds them from it.
@@ -217,7 +228,6 @@ void ContactGuard::limit(ConstVectors q, Vectors d) {
   shorten(d);
   cover(q, d);
   ++counts_.limits;
-  outside_.resize(x_.size());
   for (int round = 0; round < most_rounds; ++round) {
     {
       const Stopwatch watch(counts_.limit_seconds);

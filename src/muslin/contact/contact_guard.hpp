@@ -63,6 +63,8 @@ class ContactGuard : public StepGuard {
   /// Repeats the last search for candidates.
   void find_again();
   void forget_renewed();
+  template <class Inside>
+  std::size_t find_outside(const Inside& inside);
   void renew();
   bool renew_stopped(ConstVectors d);
   void measure(ConstVectors q);

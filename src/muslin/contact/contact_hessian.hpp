@@ -39,20 +39,18 @@ class ContactHessian : public Potential {
   void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;
 
  private:
-  struct Entry {
-    int index;  ///< vertex of a row, or row of a vertex
-    double weight;
-  };
   struct Stiffness {
     Vec3 normal;
     double a, b;
     Vec3 times(const Vec3& r) const { return b * r + (a - b) * normal.dot(r) * normal; }
   };
+  std::span<const StepGuard::Weight> weights(std::size_t row) const;
   Vec3 relative(std::size_t row, ConstVectors p) const;
 
+  std::size_t vertex_count_;
   std::vector<Stiffness> rows_;
-  std::vector<int> row_offsets_, vertex_offsets_;
-  std::vector<Entry> by_row_, by_vertex_;
+  std::vector<int> offsets_;  ///< of the rows' weights
+  std::vector<StepGuard::Weight> weights_;
 };
 
 }  // namespace muslin

@@ -89,8 +89,7 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
     Rub rub;
     Carried carried;
   };
-  std::vector<std::vector<Made>> made((contacts_.size() + grain - 1) / grain);
-  parallel_for(contacts_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  const auto made = parallel_collect<Made>(contacts_.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
     for (std::size_t i = begin; i < end; ++i) {
       const MergedContact& contact = contacts_[i];
       if (!(contact.slope < 0) || contact.key == 0) continue;
@@ -98,7 +97,7 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
           surface_->friction(contact.points[0], contact.points[static_cast<std::size_t>(contact.first_size)],
                              friction.coefficient);
       if (!(coefficient > 0)) continue;
-      Made& one = made[begin / grain].emplace_back();
+      Made& one = out.emplace_back();
       Rub& rub = one.rub;
       rub.contact = contact;
       rub.limit = -coefficient * contact.slope;
@@ -110,14 +109,12 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
       rub.begin -= tangential(known_slip(*surface_, contact.key, slips), contact.normal);
     }
   });
-  for (std::vector<Made>& block : made) {
-    for (Made& one : block) {
-      if (one.carried.count > 0) {
-        one.rub.carried = static_cast<int>(carried_.size());
-        carried_.push_back(one.carried);
-      }
-      rubs_.push_back(one.rub);
-    }
+  rubs_.reserve(made.size());
+  for (const Made& one : made) {
+    Rub& rub = rubs_.emplace_back(one.rub);
+    if (one.carried.count == 0) continue;
+    rub.carried = static_cast<int>(carried_.size());
+    carried_.push_back(one.carried);
   }
 }
 
@@ -251,16 +248,23 @@ ContactHessian ContactPotential::hessian(ConstVectors q) const {
   std::vector<Vec3> buffer;
   std::vector<MergedContact> merged;
   const ConstVectors x = points(q, buffer);
-  std::vector<ContactRow> rows;
-  for (const MergedContact& contact : contacts(x, merged)) {
-    if (contact.curvature > 0)
-      rows.push_back({contact.points, contact.weights, contact.normal, contact.curvature, 0, {}});
-    add_tilt(contact, x, rows);
-  }
-  for (const Rub& rub : rubs_) {
-    const double secant = rub.limit * friction_law(slip(rub, x, q).norm(), friction_.stick_length).curvature;
-    rows.push_back({rub.contact.points, rub.weights, rub.contact.normal, 0, secant, carried(rub)});
-  }
+  const std::span<const MergedContact> all = contacts(x, merged);
+  auto rows = parallel_collect<ContactRow>(all.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+    for (const MergedContact& contact : all.subspan(begin, end - begin)) {
+      if (contact.curvature > 0)
+        out.push_back({contact.points, contact.weights, contact.normal, contact.curvature, 0, {}});
+      add_tilt(contact, x, out);
+    }
+  });
+  const std::size_t normal_rows = rows.size();
+  rows.resize(normal_rows + rubs_.size());
+  parallel_for(rubs_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Rub& rub = rubs_[i];
+      const double secant = rub.limit * friction_law(slip(rub, x, q).norm(), friction_.stick_length).curvature;
+      rows[normal_rows + i] = {rub.contact.points, rub.weights, rub.contact.normal, 0, secant, carried(rub)};
+    }
+  });
   return {*map_, rows};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -14,13 +15,21 @@ bool is_infinite(const ContactBody& body) { return !(body.mass > 0) && std::isin
 
 }  // namespace
 
+void ContactSurface::TriangleLists::assign(std::size_t count, const std::vector<std::array<int, 2>>& pairs) {
+  begins_.assign(count + 1, 0);
+  for (const auto& [i, t] : pairs) ++begins_[static_cast<std::size_t>(i) + 1];
+  std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+  std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
+  all_.resize(pairs.size());
+  for (const auto& [i, t] : pairs) all_[next[static_cast<std::size_t>(i)]++] = t;
+}
+
 ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
                                std::vector<ContactBody> bodies, std::vector<ContactPlane> planes)
     : triangles_(std::move(triangles)),
       triangle_edges_(triangles_.size(), Vec3i::Constant(-1)),
       ownership_(triangles_.size()),
       body_of_point_(std::move(body_of_point)),
-      point_shares_(body_of_point_.size(), 0),
       round_triangles_(body_of_point_.size(), -1),
       bodies_(std::move(bodies)),
       planes_(std::move(planes)) {
@@ -59,6 +68,7 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
     int triangle, side;
   };
   std::vector<Corner> sides;
+  std::vector<std::array<int, 2>> at_points, at_edges;
   sides.reserve(3 * triangles_.size());
   std::vector<std::uint8_t> owned(body_of_point_.size(), 0);
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -74,7 +84,7 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
       if (round < 0 && (corners[0] == corners[1] || corners[1] == corners[2])) round = static_cast<int>(t);
       if (p != q) sides.push_back({{std::min(p, q), std::max(p, q)}, static_cast<int>(t), i});
       if ((i > 0 && p == corners[0]) || (i == 2 && p == corners[1])) continue;
-      ++point_shares_[static_cast<std::size_t>(p)];
+      at_points.push_back({p, static_cast<int>(t)});
       std::uint8_t& taken = owned[static_cast<std::size_t>(p)];
       if (taken == 0) ownership_[t].vertices = static_cast<std::uint8_t>(ownership_[t].vertices | 1U << i);
       taken = 1;
@@ -89,16 +99,18 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
     const bool is_new = i == 0 || side.edge != sides[i - 1].edge;
     if (is_new) {
       edges_.push_back(side.edge);
-      edge_shares_.push_back(0);
       const int opposite = triangles_[t][(side.side + 2) % 3];
       lone_corners_.push_back(opposite == side.edge[0] || opposite == side.edge[1] ? -1 : opposite);
       ownership_[t].edges = static_cast<std::uint8_t>(ownership_[t].edges | 1U << side.side);
     }
+    const int edge = static_cast<int>(edges_.size()) - 1;
     // The two sides of a segment (a, b, b) are one edge of one triangle.
-    if (is_new || side.triangle != sides[i - 1].triangle) ++edge_shares_.back();
-    if (edge_shares_.back() > 1) lone_corners_.back() = -1;
-    triangle_edges_[t][side.side] = static_cast<int>(edges_.size()) - 1;
+    if (is_new || side.triangle != sides[i - 1].triangle) at_edges.push_back({edge, side.triangle});
+    if (!is_new && side.triangle != sides[i - 1].triangle) lone_corners_.back() = -1;
+    triangle_edges_[t][side.side] = edge;
   }
+  at_points_.assign(body_of_point_.size(), at_points);
+  at_edges_.assign(edges_.size(), at_edges);
 }
 
 }  // namespace muslin

@@ -103,16 +103,31 @@ class ContactSurface {
   bool is_round(int point) const { return round_triangle(point) >= 0; }
   /// Returns that triangle, the first of several; −1: none.
   int round_triangle(int point) const { return round_triangles_[static_cast<std::size_t>(point)]; }
-  /// Return the number of triangles that share a point or an edge.
-  int triangles_at_point(int p) const { return point_shares_[static_cast<std::size_t>(p)]; }
-  int triangles_at_edge(int e) const { return edge_shares_[static_cast<std::size_t>(e)]; }
+  /// Return the triangles that share a point or an edge, ascending.
+  std::span<const int> triangles_at_point(int p) const { return at_points_[static_cast<std::size_t>(p)]; }
+  std::span<const int> triangles_at_edge(int e) const { return at_edges_[static_cast<std::size_t>(e)]; }
 
  private:
+  /// Lists of triangles, one after the other.
+  class TriangleLists {
+   public:
+    std::span<const int> operator[](std::size_t i) const {
+      return std::span(all_).subspan(begins_[i], begins_[i + 1] - begins_[i]);
+    }
+    /// Sets list i to the triangles t of all pairs (i, t), in the order of the pairs.
+    void assign(std::size_t count, const std::vector<std::array<int, 2>>& pairs);
+
+   private:
+    std::vector<std::size_t> begins_;
+    std::vector<int> all_;
+  };
+
   std::vector<Vec3i> triangles_, triangle_edges_;
   std::vector<Edge> edges_;
   std::vector<int> lone_corners_;  // by edge
   std::vector<Ownership> ownership_;
-  std::vector<int> body_of_point_, point_shares_, edge_shares_;
+  TriangleLists at_points_, at_edges_;
+  std::vector<int> body_of_point_;
   std::vector<int> round_triangles_;
   std::vector<ContactBody> bodies_;
   std::vector<ContactPlane> planes_;

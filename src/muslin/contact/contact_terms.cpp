@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
@@ -15,7 +14,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024, surface_grain = 128;
+constexpr std::size_t grain = 1024, patch_grain = 128;
 constexpr double rounding = 1e-9;
 /// A round body meets the insides of faces and edges within this share of the range, and not at all where
 /// they come nearer to it than their corners by less than the second share: then these are enough. One that
@@ -79,152 +78,180 @@ double range_of(const ContactSurface& surface, const ContactPair& pair, ConstVec
 
 bool is_near(double gap, double range) { return gap > 0 && gap < PairDistances::ranges_known * range; }
 
-/// The places of keys in a list to which they are added one by one. Short lists are searched key by key, long
-/// ones by a table: most vertices are near to a few features, a ball to thousands.
-template <class Key, class Hash>
-class Places {
+/// The triangles of one body that one vertex is near to.
+class Patch {
  public:
-  void clear() {
-    keys_.clear();
-    table_.clear();
-  }
-  /// The length of the list for a key that is not in it.
-  std::size_t find(const Key& key) const {
-    if (table_.empty())
-      return static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin());
-    const auto known = table_.find(key);
-    return known == table_.end() ? keys_.size() : known->second;
-  }
-  void add(const Key& key) {
-    keys_.push_back(key);
-    if (keys_.size() <= few) return;
-    for (std::size_t i = table_.empty() ? 0 : keys_.size() - 1; i < keys_.size(); ++i) table_.emplace(keys_[i], i);
-  }
+  explicit Patch(const PairDistances& distances)
+      : surface_(distances.candidates().surface()),
+        pairs_(distances.candidates().pairs()),
+        distances_(distances) {}
 
- private:
-  static constexpr std::size_t few = 24;
-  std::vector<Key> keys_;
-  std::unordered_map<Key, std::size_t, Hash> table_;
-};
-
-/// The terms of one vertex against the triangles of `pairs`.
-class VertexTerms {
- public:
-  VertexTerms(const PairDistances& distances, double dt, std::vector<ContactTerm>& out)
-      : surface_(distances.candidates().surface()), distances_(distances), dt_(dt), out_(out) {}
-
-  void add(std::span<const int> pairs) {
-    edges_.clear();
-    corners_.clear();
-    const std::span<const ContactPair> all = distances_.candidates().pairs();
-    bool reduced = false;
-    for (const int i : pairs) {
-      const ContactPair& pair = all[static_cast<std::size_t>(i)];
-      const auto t = static_cast<std::size_t>(pair.second);
-      const Vec3i &corners = surface_.triangles()[t], &edges = surface_.triangle_edges()[t];
-      for (int k = 0; k < 3; ++k) {
-        const bool corner_again =
-            (k > 0 && corners[k] == corners[0]) || (k == 2 && corners[2] == corners[1]);
-        if (!corner_again) note(corners_, corners[k], pair);
-        const bool edge_again = (k > 0 && edges[k] == edges[0]) || (k == 2 && edges[2] == edges[1]);
-        if (edges[k] >= 0 && !edge_again) note(edges_, edges[k], pair);
+  /// Sets the pairs of the vertex with the triangles, in the order of the triangles.
+  void assign(std::span<const int> pairs) {
+    if (!places_.empty())
+      for (const int t : triangles_) places_[static_cast<std::size_t>(t)] = -1;
+    indices_ = pairs;
+    triangles_.resize(pairs.size());
+    ranges_.resize(pairs.size());
+    if (is_large(pairs.size()) && places_.empty()) places_.assign(surface_.triangles().size(), -1);
+    parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        triangles_[k] = pair(k).second;
+        ranges_[k] = range_of(surface_, pair(k), distances_.points());
+        if (!places_.empty()) places_[static_cast<std::size_t>(triangles_[k])] = static_cast<int>(k);
       }
-      const double range = range_of(surface_, pair, distances_.points());
-      reduced |= range < pair.range;
-      if (range > 0) {
-        out_.push_back({ContactTerm::Kind::vertex_triangle, pair.points, -1, pair.key(), pair.thickness,
-                        range, surface_.stiffness(pair.points[0], pair.points[3], dt_)});
-      }
+    });
+    vertex_ = pair(0).points[0];
+    const auto range_is_less = [&](std::size_t k) { return ranges_[k] < pair(k).range; };
+    corners_only_ = false;
+    if (is_lone_point())
+      for (std::size_t k = 0; k < size() && !corners_only_; ++k) corners_only_ = range_is_less(k);
+  }
+
+  std::size_t size() const { return triangles_.size(); }
+  /// Large patches find triangles by a table, and are worth several threads.
+  static bool is_large(std::size_t size) { return size > 256; }
+
+  /// Appends the terms of triangle k, and those of its edges and corners that no triangle before it has.
+  void add_terms(std::size_t k, double dt, std::vector<ContactTerm>& out) const {
+    const ContactPair& own = pair(k);
+    if (ranges_[k] > 0) {
+      out.push_back({ContactTerm::Kind::vertex_triangle, own.points, -1, own.key(), own.thickness, ranges_[k],
+                     surface_.stiffness(own.points[0], own.points[3], dt)});
     }
-    const ContactPair& first = all[static_cast<std::size_t>(pairs[0])];
-    const int v = first.points[0];
-    if (reduced && is_lone_point(v)) add_corners(v, first);
-    for (const Feature& e : edges_.all) {
-      if (e.triangles == 1) continue;
-      const ContactSurface::Edge& ends = surface_.edges()[static_cast<std::size_t>(e.index)];
-      for (const int end : ends) {
-        const std::size_t place = corners_.places.find(end);
-        if (place < corners_.all.size()) corners_.all[place].coefficient -= 1 - e.triangles;
-      }
-      add_feature(e, {v, ends[0], ends[1], -1}, ContactTerm::Kind::vertex_edge, 1 - e.triangles);
-    }
-    for (const Feature& corner : corners_.all) {
-      add_feature(corner, {v, corner.index, -1, -1}, ContactTerm::Kind::vertex_vertex,
-                  corner.coefficient + 1 - corner.triangles);
+    const Vec3i &corners = surface_.triangles()[at(triangles_[k])], &edges = surface_.triangle_edges()[at(triangles_[k])];
+    for (int i = 0; i < 3; ++i) {
+      if (!is_again(edges, i) && edges[i] >= 0) add_edge(k, edges[i], dt, out);
+      if (!is_again(corners, i)) add_corner(k, corners[i], dt, out);
     }
   }
 
  private:
-  bool is_lone_point(int v) const {
-    if (!surface_.is_round(v)) return false;
-    const Vec3i& t = surface_.triangles()[static_cast<std::size_t>(surface_.round_triangle(v))];
+  /// What the triangles of the patch have in common at an edge or a corner.
+  struct Feature {
+    int triangles = 0;
+    double thickness = std::numeric_limits<double>::infinity(), range = thickness;
+  };
+
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  static bool is_again(const Vec3i& three, int i) {
+    return (i > 0 && three[i] == three[0]) || (i == 2 && three[2] == three[1]);
+  }
+  const ContactPair& pair(std::size_t k) const { return pairs_[at(indices_[k])]; }
+
+  /// Returns the place of a triangle in the patch; size() if it is not in it.
+  std::size_t find(int triangle) const {
+    if (is_large(size())) {
+      const int place = places_[at(triangle)];
+      return place < 0 ? size() : at(place);
+    }
+    const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), triangle);
+    return found != triangles_.end() && *found == triangle ? static_cast<std::size_t>(found - triangles_.begin())
+                                                           : size();
+  }
+
+  /// True if triangle k is the first of the patch among `triangles`, of which it is one.
+  bool is_first(std::size_t k, std::span<const int> triangles) const {
+    for (const int t : triangles)
+      if (const std::size_t place = find(t); place < size()) return place == k;
+    return false;
+  }
+
+  Feature feature(std::span<const int> triangles) const {
+    Feature result;
+    for (const int t : triangles) {
+      const std::size_t k = find(t);
+      if (k == size()) continue;
+      ++result.triangles;
+      result.thickness = std::min(result.thickness, pair(k).thickness);
+      result.range = std::min(result.range, ranges_[k]);
+    }
+    return result;
+  }
+
+  void add_edge(std::size_t k, int edge, double dt, std::vector<ContactTerm>& out) const {
+    const std::span<const int> triangles = surface_.triangles_at_edge(edge);
+    if (!is_first(k, triangles)) return;
+    const Feature e = feature(triangles);
+    const ContactSurface::Edge& ends = surface_.edges()[at(edge)];
+    add({ContactTerm::Kind::vertex_edge, {vertex_, ends[0], ends[1], -1}, -1, 0, e.thickness, e.range,
+         (1 - e.triangles) * surface_.stiffness(vertex_, ends[0], dt)},
+        out);
+  }
+
+  void add_corner(std::size_t k, int corner, double dt, std::vector<ContactTerm>& out) const {
+    const std::span<const int> triangles = surface_.triangles_at_point(corner);
+    if (!is_first(k, triangles)) return;
+    const double stiffness = surface_.stiffness(vertex_, corner, dt);
+    if (corners_only_) {
+      // The search finds the centre of a sphere and corners only with the corners' triangles.
+      const std::uint64_t key =
+          ContactPair::key_of(PairKind::vertex_triangle, corner, surface_.round_triangle(vertex_));
+      add({ContactTerm::Kind::vertex_vertex, {vertex_, corner, -1, -1}, -1, key, pair(0).thickness, pair(0).range,
+           stiffness},
+          out);
+    }
+    const Feature c = feature(triangles);
+    if (!(c.range > 0)) return;
+    // Each triangle but the first at an edge adds one to Σ (n_e − 1).
+    int coefficient = 1 - c.triangles;
+    for (const int t : triangles) {
+      const std::size_t place = find(t);
+      if (place == size()) continue;
+      const Vec3i& edges = surface_.triangle_edges()[at(t)];
+      for (int i = 0; i < 3; ++i) {
+        if (edges[i] < 0 || is_again(edges, i)) continue;
+        const ContactSurface::Edge& ends = surface_.edges()[at(edges[i])];
+        const bool meets = ends[0] == corner || ends[1] == corner;
+        if (meets && !is_first(place, surface_.triangles_at_edge(edges[i]))) ++coefficient;
+      }
+    }
+    add({ContactTerm::Kind::vertex_vertex, {vertex_, corner, -1, -1}, -1, 0, c.thickness, c.range,
+         coefficient * stiffness},
+        out);
+  }
+
+  void add(const ContactTerm& term, std::vector<ContactTerm>& out) const {
+    if (term.stiffness == 0 || !(term.range > 0)) return;
+    const double gap = term_geometry(surface_, term, distances_.points()).distance - term.thickness;
+    if (is_near(gap, term.range)) out.push_back(term);
+  }
+
+  bool is_lone_point() const {
+    if (!surface_.is_round(vertex_)) return false;
+    const Vec3i& t = surface_.triangles()[at(surface_.round_triangle(vertex_))];
     return t[0] == t[1] && t[1] == t[2];
   }
 
-  /// The centre of a sphere and the corners of triangles; the search finds them with the triangles only.
-  void add_corners(int v, const ContactPair& pair) {
-    for (const Feature& corner : corners_.all) {
-      ContactTerm term;
-      term.kind = ContactTerm::Kind::vertex_vertex;
-      term.points = {v, corner.index, -1, -1};
-      term.key = ContactPair::key_of(PairKind::vertex_triangle, corner.index, surface_.round_triangle(v));
-      term.thickness = pair.thickness;
-      term.range = pair.range;
-      term.stiffness = surface_.stiffness(v, corner.index, dt_);
-      const double gap = term_geometry(surface_, term, distances_.points()).distance - term.thickness;
-      if (is_near(gap, term.range)) out_.push_back(term);
-    }
-  }
-
-  struct Feature {
-    int index = 0, triangles = 0, coefficient = 0;
-    double thickness = 0, range = 0;
-  };
-  /// Edges or corners, each once.
-  struct Features {
-    std::vector<Feature> all;
-    Places<int, std::hash<int>> places;
-    void clear() {
-      all.clear();
-      places.clear();
-    }
-  };
-
-  void note(Features& features, int index, const ContactPair& pair) const {
-    const double range = range_of(surface_, pair, distances_.points());
-    const std::size_t place = features.places.find(index);
-    if (place < features.all.size()) {
-      Feature& known = features.all[place];
-      ++known.triangles;
-      known.thickness = std::min(known.thickness, pair.thickness);
-      known.range = std::min(known.range, range);
-      return;
-    }
-    features.all.push_back({index, 1, 0, pair.thickness, range});
-    features.places.add(index);
-  }
-
-  void add_feature(const Feature& feature, const std::array<int, 4>& points, ContactTerm::Kind kind,
-                   int coefficient) {
-    if (coefficient == 0) return;
-    const ContactTerm term = {kind,
-                              points,
-                              -1,
-                              0,
-                              feature.thickness,
-                              feature.range,
-                              coefficient * surface_.stiffness(points[0], points[1], dt_)};
-    if (!(term.range > 0)) return;
-    const double gap = term_geometry(surface_, term, distances_.points()).distance - term.thickness;
-    if (is_near(gap, term.range)) out_.push_back(term);
-  }
-
   const ContactSurface& surface_;
+  std::span<const ContactPair> pairs_;
   const PairDistances& distances_;
-  double dt_;
-  std::vector<ContactTerm>& out_;
-  Features edges_, corners_;
+  std::span<const int> indices_;  ///< into pairs_
+  std::vector<int> triangles_;
+  std::vector<double> ranges_;
+  std::vector<int> places_;  ///< by triangle; −1: none. Empty before the first large patch
+  int vertex_ = 0;
+  bool corners_only_ = false;  ///< a sphere that some of the triangles are too small to meet as faces
 };
+
+/// Appends the term of a pair of a point and a plane or of two edges.
+void add_term(const PairDistances& distances, std::size_t i, double dt, std::vector<ContactTerm>& out) {
+  const ContactSurface& surface = distances.candidates().surface();
+  const ContactPair& pair = distances.candidates().pairs()[i];
+  const double stiffness =
+      surface.stiffness(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)], dt);
+  if (pair.kind == PairKind::point_plane) {
+    out.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness, pair.range,
+                   stiffness});
+    return;
+  }
+  const double factor = edge_factor(surface, pair, distances[i], distances.points());
+  const double range = range_of(surface, pair, distances.points());
+  if (factor > 0 && range > 0) {
+    out.push_back({ContactTerm::Kind::edge_edge, pair.points, -1, pair.key(), pair.thickness, range,
+                   factor * stiffness});
+  }
+}
 
 /// Leaves out points without weight and names each point once.
 MergedContact reduced(const ContactTerm& term, const PairGeometry& at) {
@@ -258,7 +285,8 @@ MergedContact reduced(const ContactTerm& term, const PairGeometry& at) {
 }
 
 /// Pairs of vertices and triangles in the order of their vertices, then of their triangles.
-std::vector<int> by_features(std::span<const ContactPair> pairs, std::vector<int> found, std::size_t point_count) {
+std::vector<int> by_features(std::span<const ContactPair> pairs, std::span<const int> found,
+                             std::size_t point_count) {
   const auto pair_of = [&](int i) -> const ContactPair& { return pairs[static_cast<std::size_t>(i)]; };
   std::vector<std::size_t> begins(point_count + 1, 0);
   for (const int i : found) ++begins[static_cast<std::size_t>(pair_of(i).first) + 1];
@@ -266,11 +294,13 @@ std::vector<int> by_features(std::span<const ContactPair> pairs, std::vector<int
   std::vector<int> sorted(found.size());
   std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
   for (const int i : found) sorted[next[static_cast<std::size_t>(pair_of(i).first)]++] = i;
-  for (std::size_t v = 0; v < point_count; ++v) {
-    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begins[v]),
-              sorted.begin() + static_cast<std::ptrdiff_t>(begins[v + 1]),
-              [&](int i, int j) { return pair_of(i).second < pair_of(j).second; });
-  }
+  parallel_for(point_count, grain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t v = first; v < last; ++v) {
+      std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begins[v]),
+                sorted.begin() + static_cast<std::ptrdiff_t>(begins[v + 1]),
+                [&](int i, int j) { return pair_of(i).second < pair_of(j).second; });
+    }
+  });
   return sorted;
 }
 
@@ -286,6 +316,33 @@ struct HashOfPoints {
     for (const int point : p.points) hash = (hash ^ static_cast<std::uint32_t>(point)) * 0x9e3779b97f4a7c15;
     return hash ^ hash >> 32;
   }
+};
+
+/// The places of contacts in a list to which they are added one by one. Short lists are searched one by one, long
+/// ones by a table: most vertices are near to a few features, a ball to thousands.
+class Places {
+ public:
+  void clear() {
+    keys_.clear();
+    table_.clear();
+  }
+  /// The length of the list for a key that is not in it.
+  std::size_t find(const TouchingPoints& key) const {
+    if (table_.empty())
+      return static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin());
+    const auto known = table_.find(key);
+    return known == table_.end() ? keys_.size() : known->second;
+  }
+  void add(const TouchingPoints& key) {
+    keys_.push_back(key);
+    if (keys_.size() <= few) return;
+    for (std::size_t i = table_.empty() ? 0 : keys_.size() - 1; i < keys_.size(); ++i) table_.emplace(keys_[i], i);
+  }
+
+ private:
+  static constexpr std::size_t few = 24;
+  std::vector<TouchingPoints> keys_;
+  std::unordered_map<TouchingPoints, std::size_t, HashOfPoints> table_;
 };
 
 }  // namespace
@@ -321,108 +378,98 @@ PairGeometry term_geometry(const ContactSurface& surface, const ContactTerm& ter
 std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt) {
   const ContactSurface& surface = distances.candidates().surface();
   const std::span<const ContactPair> pairs = distances.candidates().pairs();
-  struct Block {
-    std::vector<ContactTerm> terms;
-    std::vector<int> of_vertices;  // pairs
+  const auto is_near_pair = [&](std::size_t i) {
+    return distances.is_known(i) && is_near(distances[i].distance - pairs[i].thickness, pairs[i].range);
   };
-  std::vector<Block> blocks((pairs.size() + grain - 1) / grain);
-  parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
-    Block& block = blocks[begin / grain];
-    for (std::size_t i = begin; i < end; ++i) {
-      const ContactPair& pair = pairs[i];
-      if (!distances.is_known(i) || !is_near(distances[i].distance - pair.thickness, pair.range)) continue;
-      if (pair.kind == PairKind::vertex_triangle) {
-        block.of_vertices.push_back(static_cast<int>(i));
-        continue;
-      }
-      const double stiffness =
-          surface.stiffness(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)], dt);
-      if (pair.kind == PairKind::point_plane) {
-        block.terms.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness,
-                               pair.range, stiffness});
-        continue;
-      }
-      const double factor = edge_factor(surface, pair, distances[i], distances.points());
-      const double range = range_of(surface, pair, distances.points());
-      if (factor > 0 && range > 0) {
-        block.terms.push_back({ContactTerm::Kind::edge_edge, pair.points, -1, pair.key(), pair.thickness, range,
-                               factor * stiffness});
-      }
-    }
-  });
-  std::vector<ContactTerm> terms;
-  std::vector<int> found;
-  for (const Block& block : blocks) {
-    terms.insert(terms.end(), block.terms.begin(), block.terms.end());
-    found.insert(found.end(), block.of_vertices.begin(), block.of_vertices.end());
-  }
-  const auto pair_of = [&](int i) -> const ContactPair& { return pairs[static_cast<std::size_t>(i)]; };
-  const std::vector<int> of_vertices = by_features(pairs, std::move(found), distances.points().size());
+  std::vector<ContactTerm> terms =
+      parallel_collect<ContactTerm>(pairs.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (pairs[i].kind != PairKind::vertex_triangle && is_near_pair(i)) add_term(distances, i, dt, out);
+        }
+      });
+  const std::vector<int> found =
+      parallel_collect<int>(pairs.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (pairs[i].kind == PairKind::vertex_triangle && is_near_pair(i)) out.push_back(static_cast<int>(i));
+        }
+      });
+  const std::vector<int> of_vertices = by_features(pairs, found, distances.points().size());
   // A vertex meets the triangles of one body as one surface; another body is another contact.
   std::vector<std::size_t> begins;
   for (std::size_t k = 0; k < of_vertices.size(); ++k) {
     const auto meets = [&](std::size_t at) {
-      const ContactPair& pair = pair_of(of_vertices[at]);
+      const ContactPair& pair = pairs[static_cast<std::size_t>(of_vertices[at])];
       return std::pair(pair.first, surface.body_of(pair.points[3]));
     };
     if (k == 0 || meets(k) != meets(k - 1)) begins.push_back(k);
   }
-  const std::size_t surfaces = begins.size();
+  const std::size_t patches = begins.size();
   begins.push_back(of_vertices.size());
-  std::vector<std::vector<ContactTerm>> terms_of_block((surfaces + surface_grain - 1) / surface_grain);
-  parallel_for(surfaces, surface_grain, [&](std::size_t begin, std::size_t end) {
-    VertexTerms of_vertex(distances, dt, terms_of_block[begin / surface_grain]);
-    for (std::size_t s = begin; s < end; ++s)
-      of_vertex.add(std::span(of_vertices).subspan(begins[s], begins[s + 1] - begins[s]));
-  });
-  for (const std::vector<ContactTerm>& block : terms_of_block) terms.insert(terms.end(), block.begin(), block.end());
+  const auto pairs_of = [&](std::size_t p) {
+    return std::span(of_vertices).subspan(begins[p], begins[p + 1] - begins[p]);
+  };
+  const auto append = [&](const std::vector<ContactTerm>& more) {
+    terms.insert(terms.end(), more.begin(), more.end());
+  };
+  append(parallel_collect<ContactTerm>(patches, patch_grain, [&](std::size_t begin, std::size_t end, auto& out) {
+    Patch patch(distances);
+    for (std::size_t p = begin; p < end; ++p) {
+      if (Patch::is_large(pairs_of(p).size())) continue;
+      patch.assign(pairs_of(p));
+      for (std::size_t k = 0; k < patch.size(); ++k) patch.add_terms(k, dt, out);
+    }
+  }));
+  Patch large(distances);
+  for (std::size_t p = 0; p < patches; ++p) {
+    if (!Patch::is_large(pairs_of(p).size())) continue;
+    large.assign(pairs_of(p));
+    append(parallel_collect<ContactTerm>(large.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      for (std::size_t k = begin; k < end; ++k) large.add_terms(k, dt, out);
+    }));
+  }
   return terms;
 }
 
 std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::span<const ContactTerm> terms,
                                            ConstVectors x) {
-  const std::size_t blocks = (terms.size() + grain - 1) / grain;
-  std::vector<std::vector<MergedContact>> parts(blocks);
-  parallel_for(terms.size(), grain, [&](std::size_t begin, std::size_t end) {
-    std::vector<MergedContact>& part = parts[begin / grain];
-    for (std::size_t i = begin; i < end; ++i) {
-      const PairGeometry at = term_geometry(surface, terms[i], x);
-      const double gap = at.distance - terms[i].thickness;
-      if (gap >= terms[i].range) continue;
-      const Law law = contact_law(gap, terms[i].range);
-      MergedContact contact = reduced(terms[i], at);
-      contact.slope = terms[i].stiffness * law.slope;
-      contact.curvature = terms[i].stiffness * law.curvature;
-      contact.stiffness = terms[i].stiffness;
-      contact.magnitude = std::abs(contact.slope);
-      contact.distance = at.distance;
-      part.push_back(contact);
-    }
-  });
+  const std::vector<MergedContact> contacts =
+      parallel_collect<MergedContact>(terms.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const PairGeometry at = term_geometry(surface, terms[i], x);
+          const double gap = at.distance - terms[i].thickness;
+          if (gap >= terms[i].range) continue;
+          const Law law = contact_law(gap, terms[i].range);
+          MergedContact contact = reduced(terms[i], at);
+          contact.slope = terms[i].stiffness * law.slope;
+          contact.curvature = terms[i].stiffness * law.curvature;
+          contact.stiffness = terms[i].stiffness;
+          contact.magnitude = std::abs(contact.slope);
+          contact.distance = at.distance;
+          out.push_back(contact);
+        }
+      });
   // Terms of one vertex follow one another.
   std::vector<MergedContact> merged;
   std::size_t first = 0;
-  Places<TouchingPoints, HashOfPoints> places;
-  for (const std::vector<MergedContact>& part : parts) {
-    for (const MergedContact& contact : part) {
-      if (!merged.empty() && merged.back().points[0] != contact.points[0]) {
-        first = merged.size();
-        places.clear();
-      }
-      const TouchingPoints points = {contact.first_size, contact.points};
-      const std::size_t place = first + places.find(points);
-      if (place == merged.size()) {
-        merged.push_back(contact);
-        places.add(points);
-        continue;
-      }
-      MergedContact& same = merged[place];
-      same.slope += contact.slope;
-      same.curvature += contact.curvature;
-      same.stiffness += contact.stiffness;
-      same.magnitude += contact.magnitude;
-      if (same.key == 0) same.key = contact.key;
+  Places places;
+  for (const MergedContact& contact : contacts) {
+    if (!merged.empty() && merged.back().points[0] != contact.points[0]) {
+      first = merged.size();
+      places.clear();
     }
+    const TouchingPoints points = {contact.first_size, contact.points};
+    const std::size_t place = first + places.find(points);
+    if (place == merged.size()) {
+      merged.push_back(contact);
+      places.add(points);
+      continue;
+    }
+    MergedContact& same = merged[place];
+    same.slope += contact.slope;
+    same.curvature += contact.curvature;
+    same.stiffness += contact.stiffness;
+    same.magnitude += contact.magnitude;
+    if (same.key == 0) same.key = contact.key;
   }
   std::erase_if(merged, [](const MergedContact& contact) {
     return contact.stiffness == 0 && std::abs(contact.slope) <= rounding * contact.magnitude;

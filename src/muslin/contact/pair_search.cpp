@@ -393,7 +393,7 @@ struct PairSearch::Tree {
     return ask_bodies && !surface->may_touch(surface->body_of(p), surface->body_of(q));
   }
   bool is_lone(int p) const {
-    return lone[static_cast<std::size_t>(p)] != 0 && surface->triangles_at_point(p) == 1;
+    return lone[static_cast<std::size_t>(p)] != 0 && surface->triangles_at_point(p).size() == 1;
   }
 
   void leave_out_unwanted(FeaturePairs& found) const {

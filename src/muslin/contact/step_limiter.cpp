@@ -301,15 +301,14 @@ struct StepLimiter::Work {
     // Shortening one of several vertices may move a point out of its box again: repeat until none is out.
     for (std::size_t round = 0;; ++round) {
       map.apply(dq, u);
+      const auto outside =
+          parallel_collect<std::pair<int, double>>(map.point_count(), grain, [&](auto begin, auto end, auto& out) {
+            for (std::size_t p = begin; p < end; ++p)
+              if (const double factor = factor_within_box(p); factor < 1) out.emplace_back(static_cast<int>(p), factor);
+          });
+      if (outside.empty()) return count;
       std::fill(by.begin(), by.end(), 1.0);
-      bool outside = false;
-      for (std::size_t p = 0; p < map.point_count(); ++p) {
-        const double factor = factor_within_box(p);
-        if (factor >= 1) continue;
-        outside = true;
-        lower(by, static_cast<int>(p), round < last_rounds ? factor * (1 - 1e-9) : 0);
-      }
-      if (!outside) return count;
+      for (const auto& [point, factor] : outside) lower(by, point, round < last_rounds ? factor * (1 - 1e-9) : 0);
       join_groups(by);
       count = std::max(count, shorten(by, dq));
     }

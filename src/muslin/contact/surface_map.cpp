@@ -54,7 +54,9 @@ SurfaceMap::SurfaceMap(std::size_t vertex_count, std::vector<int> offsets, std::
 
 void SurfaceMap::apply(ConstVectors q, Vectors x) const {
   if (identity_) {
-    std::copy(q.begin(), q.end(), x.begin());
+    parallel_for(q.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) x[v] = q[v];
+    });
     return;
   }
   parallel_for(point_count(), grain, [&](std::size_t begin, std::size_t end) {

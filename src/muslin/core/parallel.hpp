@@ -38,4 +38,23 @@ Value parallel_sum(std::size_t count, std::size_t grain, Value zero, const Body&
   return sum;
 }
 
+/// Returns what body(begin, end, out) appends to `out` (a std::vector<Value>) for the blocks of parallel_for, in
+/// their order.
+template <class Value, class Body>
+std::vector<Value> parallel_collect(std::size_t count, std::size_t grain, const Body& body) {
+  std::vector<Value> all;
+  if (count <= grain) {
+    if (count > 0) body(std::size_t{0}, count, all);
+    return all;
+  }
+  std::vector<std::vector<Value>> parts((count + grain - 1) / grain);
+  parallel_for(count, grain,
+               [&](std::size_t begin, std::size_t end) { body(begin, end, parts[begin / grain]); });
+  std::size_t size = 0;
+  for (const auto& part : parts) size += part.size();
+  all.reserve(size);
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 }  // namespace muslin

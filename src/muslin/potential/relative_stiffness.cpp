@@ -20,14 +20,18 @@ void RelativeStiffness::reset(std::size_t first, std::size_t count) {
   weights_.clear();
 }
 
-void RelativeStiffness::add(const Vec3& normal, double along, double across,
+void RelativeStiffness::resize(std::size_t terms, std::size_t weights) {
+  terms_.resize(terms);
+  weights_.resize(weights);
+}
+
+void RelativeStiffness::set(std::size_t t, std::size_t begin, const Vec3& normal, double along, double across,
                             std::span<const Weight> weights) {
-  const int begin = static_cast<int>(weights_.size());
-  weights_.insert(weights_.end(), weights.begin(), weights.end());
+  std::copy(weights.begin(), weights.end(), weights_.begin() + static_cast<std::ptrdiff_t>(begin));
   const Float4 n = {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
                     static_cast<float>(normal.z()), 0};
-  terms_.push_back(Term{n, static_cast<float>(along - across), static_cast<float>(across), begin,
-                        static_cast<int>(weights_.size())});
+  terms_[t] = Term{n, static_cast<float>(along - across), static_cast<float>(across), static_cast<int>(begin),
+                   static_cast<int>(begin + weights.size())};
 }
 
 void RelativeStiffness::finish() {

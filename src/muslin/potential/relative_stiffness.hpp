@@ -23,9 +23,13 @@ class RelativeStiffness {
   };
   /// Resets to no terms, for vertices first … first + count − 1.
   void reset(std::size_t first, std::size_t count);
-  /// Adds a term: `normal` of length 1, along = a ≥ 0 and across = b ≥ 0 [kg], each vertex once.
-  void add(const Vec3& normal, double along, double across, std::span<const Weight> weights);
-  /// Call when all terms have been added.
+  /// Makes room for `terms` terms with `weights` weights in all; each is to be set.
+  void resize(std::size_t terms, std::size_t weights);
+  /// Sets term t, whose weights are number `begin` and following: `normal` of length 1, along = a ≥ 0 and
+  /// across = b ≥ 0 [kg], each vertex once. Several threads may set terms.
+  void set(std::size_t t, std::size_t begin, const Vec3& normal, double along, double across,
+           std::span<const Weight> weights);
+  /// Call when all terms have been set.
   void finish();
 
   std::size_t first() const { return first_; }

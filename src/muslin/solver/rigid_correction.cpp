@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+
+#include "muslin/core/parallel.hpp"
+#include "muslin/solver/part_sums.hpp"
+#include "muslin/solver/vector_operations.hpp"
 
 namespace muslin {
 namespace {
@@ -18,67 +23,66 @@ constexpr double most_share = 0.05, least_curvature = 0.1;
 /// A group is at rest if it moves by less than this share of the displacement by loads.
 constexpr double resting = 0.1;
 
-/// Parts that move together, found by joining pairs.
+/// Parts that move together since they touch.
 class Groups {
  public:
-  explicit Groups(std::size_t parts) : above_(parts) { std::iota(above_.begin(), above_.end(), std::size_t{0}); }
-  std::size_t size() const { return above_.size(); }
-  std::size_t of(std::size_t part) {
-    while (above_[part] != part) part = above_[part] = above_[above_[part]];
+  Groups(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard) : problem_(problem) {
+    int parts = 0;
+    for (const int part : problem.parts) parts = std::max(parts, part);
+    of_part_.resize(static_cast<std::size_t>(parts) + 1);
+    std::iota(of_part_.begin(), of_part_.end(), std::size_t{0});
+    if (!guard) return;
+    guard->for_each_contact([&](const StepGuard::Contact& contact) {
+      std::size_t first = size();
+      for (const StepGuard::Weight& w : contact.weights) {
+        const auto v = static_cast<std::size_t>(w.vertex);
+        if (function.held(v)) continue;
+        if (first < size()) join(first, part_of(v));
+        first = part_of(v);
+      }
+    });
+    for (std::size_t part = 0; part < size(); ++part) of_part_[part] = root(part);
+  }
+  std::size_t size() const { return of_part_.size(); }
+  std::size_t of_vertex(std::size_t v) const { return of_part_[part_of(v)]; }
+
+ private:
+  std::size_t part_of(std::size_t v) const {
+    return problem_.parts.empty() ? std::size_t{0} : static_cast<std::size_t>(problem_.parts[v]);
+  }
+  std::size_t root(std::size_t part) {
+    while (of_part_[part] != part) part = of_part_[part] = of_part_[of_part_[part]];
     return part;
   }
   void join(std::size_t a, std::size_t b) {
-    a = of(a), b = of(b);
-    above_[std::max(a, b)] = std::min(a, b);
+    a = root(a), b = root(b);
+    of_part_[std::max(a, b)] = std::min(a, b);
   }
 
- private:
-  std::vector<std::size_t> above_;
+  const StepProblem& problem_;
+  std::vector<std::size_t> of_part_;
 };
-
-std::size_t part_of(const StepProblem& problem, std::size_t v) {
-  return problem.parts.empty() ? std::size_t{0} : static_cast<std::size_t>(problem.parts[v]);
-}
-
-/// Groups the parts of the step's vertices; touching parts are joined.
-Groups touching_groups(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard) {
-  std::size_t parts = 1;
-  for (std::size_t v = 0; v < problem.parts.size(); ++v)
-    parts = std::max(parts, static_cast<std::size_t>(problem.parts[v]) + 1);
-  Groups groups(parts);
-  if (!guard) return groups;
-  guard->for_each_contact([&](const StepGuard::Contact& contact) {
-    std::size_t first = parts;
-    for (const StepGuard::Weight& w : contact.weights) {
-      if (function.held(static_cast<std::size_t>(w.vertex))) continue;
-      const std::size_t part = part_of(problem, static_cast<std::size_t>(w.vertex));
-      if (first < parts) groups.join(first, part);
-      first = part;
-    }
-  });
-  return groups;
-}
 
 /// Calls visit(group, stiffness) for each contact of a group with its outside, with the stiffness against
 /// translations of the group times dt² [kg].
 template <class Visit>
-void for_each_outer_contact(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
-                            Groups& groups, const Visit& visit) {
+void for_each_outer_contact(const IncrementalPotential& function, StepGuard* guard, const Groups& groups,
+                            const Visit& visit) {
   if (!guard) return;
   const double scale = function.dt() * function.dt();
   guard->for_each_contact([&](const StepGuard::Contact& contact) {
     double weight = 0;
-    std::size_t part = groups.size();
+    std::size_t group = groups.size();
     for (const StepGuard::Weight& w : contact.weights) {
       if (function.held(static_cast<std::size_t>(w.vertex))) continue;
       weight += w.weight;
-      part = part_of(problem, static_cast<std::size_t>(w.vertex));
+      group = groups.of_vertex(static_cast<std::size_t>(w.vertex));
     }
-    if (part == groups.size() || std::abs(weight) < no_weight) return;
+    if (group == groups.size() || std::abs(weight) < no_weight) return;
     const Mat3 along = contact.normal * contact.normal.transpose();
-    visit(groups.of(part), Mat3(scale * weight * weight *
-                                (contact.normal_stiffness * along +
-                                 contact.tangential * (Mat3::Identity() - along))));
+    visit(group, Mat3(scale * weight * weight *
+                      (contact.normal_stiffness * along +
+                       contact.tangential * (Mat3::Identity() - along))));
   });
 }
 
@@ -86,10 +90,22 @@ struct Group {
   double mass = 0;
   bool held = false, outside = false;  ///< has held vertices; touches something outside
   Mat3 stiffness = Mat3::Zero();       ///< of its contacts with the outside
-  Vec3 force = Vec3::Zero(), centre = Vec3::Zero(), torque = Vec3::Zero();
-  Mat3 inertia = Mat3::Zero();
-  Vec3 shift = Vec3::Zero();
+  Vec3 centre = Vec3::Zero(), shift = Vec3::Zero();
   Mat3 rotation = Mat3::Identity();
+
+  bool moves() const { return !held && mass > 0; }
+  bool turns() const { return moves() && !outside; }
+};
+
+/// Inertia and angular momentum (or torque) of a group.
+struct Turning {
+  Vec3 momentum = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();
+  void add(double mass, const Vec3& r, const Vec3& moment) {
+    momentum += moment;
+    inertia += mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  void operator+=(const Turning& other) { momentum += other.momentum, inertia += other.inertia; }
 };
 
 /// The motion of a group in a step, and the work that the residual has done on it.
@@ -97,7 +113,7 @@ struct MovingGroup {
   double mass = 0;
   bool held = false, outside = false;  ///< has held vertices; touches something outside
   Vec3 centre = Vec3::Zero(), shift = Vec3::Zero(), turn = Vec3::Zero();
-  Mat3 inertia = Mat3::Zero(), stiffness = Mat3::Zero();
+  Mat3 stiffness = Mat3::Zero();
   double work = 0, curvature = 0, inertial = 0;
   double falls = 0;  ///< its displacement by loads alone in a step [m]
 
@@ -115,165 +131,203 @@ Mat3 rotation_of(const Vec3& angle) {
   return length > 0 ? Eigen::AngleAxisd(length, angle / length).toRotationMatrix() : Mat3::Identity();
 }
 
+/// Returns the largest value of f(v), v < count; infinite or not a number if one of them is.
+template <class F>
+double largest(std::size_t count, const F& f) {
+  struct Largest {
+    double value = 0;
+    Largest operator+(const Largest& other) const {
+      return {value < other.value || std::isnan(other.value) ? other.value : value};
+    }
+  };
+  return parallel_sum(count, 2048, Largest{}, [&](std::size_t begin, std::size_t end) {
+           Largest sum;
+           for (std::size_t v = begin; v < end; ++v) sum = sum + Largest{f(v)};
+           return sum;
+         }).value;
+}
+
 }  // namespace
 
 void correct_rigid_motions(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
                            ConstVectors g, Vectors x) {
   const std::size_t count = x.size();
-  const auto part_of = [&](std::size_t v) { return muslin::part_of(problem, v); };
-  Groups groups = touching_groups(problem, function, guard);
-  const std::size_t parts = groups.size();
-  std::vector<Group> all(parts);
-  for_each_outer_contact(problem, function, guard, groups, [&](std::size_t g, const Mat3& stiffness) {
-    all[g].outside = true;
-    all[g].stiffness += stiffness;
-  });
-  for (std::size_t v = 0; v < count; ++v) {
-    Group& group = all[groups.of(part_of(v))];
+  const Groups groups(problem, function, guard);
+  const auto group_of = [&](std::size_t v) { return groups.of_vertex(v); };
+  struct Sums {
+    bool held = false;
+    double mass = 0;
+    Vec3 force = Vec3::Zero(), centre = Vec3::Zero();
+    void operator+=(const Sums& other) {
+      held |= other.held, mass += other.mass, force += other.force, centre += other.centre;
+    }
+  };
+  const auto sums = sum_by_part<Sums>(count, groups.size(), group_of, [&](Sums& sum, std::size_t v) {
     if (function.held(v)) {
-      group.held = true;
-      continue;
+      sum.held = true;
+      return;
     }
     const double m = problem.masses[v];
-    group.mass += m;
-    group.force += g[v];
-    group.centre += m * x[v];
-  }
+    sum.mass += m;
+    sum.force += g[v];
+    sum.centre += m * x[v];
+  });
+  std::vector<Group> all(groups.size());
+  for_each_outer_contact(function, guard, groups, [&](std::size_t touching, const Mat3& stiffness) {
+    all[touching].outside = true;
+    all[touching].stiffness += stiffness;
+  });
   bool any = false;
-  for (Group& group : all) {
-    if (group.held || !(group.mass > 0)) continue;
-    group.centre /= group.mass;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Group& group = all[i];
+    group.held = sums[i].held;
+    group.mass = sums[i].mass;
+    if (!group.moves()) continue;
+    group.centre = sums[i].centre / group.mass;
     const Mat3 resistance = group.mass * Mat3::Identity() + group.stiffness;
-    group.shift = -(resistance.ldlt().solve(group.force));
+    group.shift = -(resistance.ldlt().solve(sums[i].force));
     any = true;
   }
   if (!any) return;
-  const auto moves = [&](std::size_t v) -> Group* {
-    Group& group = all[groups.of(part_of(v))];
-    return group.held || !(group.mass > 0) ? nullptr : &group;
-  };
   // The torque of all forces but inertia is constant while the group rotates as a whole.
-  for (std::size_t v = 0; v < count; ++v) {
-    Group* const group = moves(v);
-    if (!group || group->outside) continue;
-    const Vec3 r = x[v] - group->centre;
+  const auto turning = sum_by_part<Turning>(count, groups.size(), group_of, [&](Turning& sum, std::size_t v) {
+    const Group& group = all[group_of(v)];
+    if (!group.turns()) return;
+    const Vec3 r = x[v] - group.centre;
     const double m = problem.masses[v];
-    group->torque += r.cross(g[v] - m * (x[v] - function.prediction()[v]));
-    group->inertia += m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-  }
+    sum.add(m, r, r.cross(g[v] - m * (x[v] - function.prediction()[v])));
+  });
+  struct Torque {
+    Vec3 of = Vec3::Zero();
+    void operator+=(const Torque& other) { of += other.of; }
+  };
   for (int turn = 0; turn < turns; ++turn) {
-    std::vector<Vec3> torque(parts, Vec3::Zero());
-    for (std::size_t v = 0; v < count; ++v) {
-      Group* const group = moves(v);
-      if (!group || group->outside) continue;
-      const Vec3 r = group->rotation * (x[v] - group->centre);
-      const Vec3 there = group->centre + group->shift + r;
-      torque[groups.of(part_of(v))] += problem.masses[v] * r.cross(there - function.prediction()[v]);
-    }
-    for (std::size_t p = 0; p < parts; ++p) {
-      Group& group = all[p];
-      if (group.held || group.outside || !(group.mass > 0)) continue;
-      const double least = 1e-12 * group.inertia.trace();
-      if (!(least > 0)) continue;
-      const Vec3 angle = -((group.inertia + least * Mat3::Identity()).ldlt().solve(torque[p] + group.torque));
+    const auto torque = sum_by_part<Torque>(count, groups.size(), group_of, [&](Torque& sum, std::size_t v) {
+      const Group& group = all[group_of(v)];
+      if (!group.turns()) return;
+      const Vec3 r = group.rotation * (x[v] - group.centre);
+      const Vec3 there = group.centre + group.shift + r;
+      sum.of += problem.masses[v] * r.cross(there - function.prediction()[v]);
+    });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Group& group = all[i];
+      const Mat3& inertia = turning[i].inertia;
+      const double least = 1e-12 * inertia.trace();
+      if (!group.turns() || !(least > 0)) continue;
+      const Vec3 angle =
+          -((inertia + least * Mat3::Identity()).ldlt().solve(torque[i].of + turning[i].momentum));
       if (angle.allFinite() && angle.norm() < 0.1) group.rotation = rotation_of(angle) * group.rotation;
     }
   }
   std::vector<Vec3> d(count, Vec3::Zero());
-  std::vector<int> group_of(count, -1);
-  double farthest = 0;
-  for (std::size_t v = 0; v < count; ++v) {
-    const Group* const group = moves(v);
-    if (!group) continue;
-    const Vec3 r = x[v] - group->centre;
-    d[v] = group->shift + (group->rotation * r - r);
-    group_of[v] = static_cast<int>(groups.of(part_of(v)));
-    if (!d[v].allFinite()) return;
-    farthest = std::max(farthest, d[v].norm());
-  }
-  if (guard && farthest > guard->slack()) guard->limit(x, d, group_of);
-  for (std::size_t v = 0; v < count; ++v) x[v] += d[v];
+  std::vector<int> moved_group(count, -1);
+  const double farthest = largest(count, [&](std::size_t v) {
+    const Group& group = all[group_of(v)];
+    if (!group.moves()) return 0.0;
+    const Vec3 r = x[v] - group.centre;
+    d[v] = group.shift + (group.rotation * r - r);
+    moved_group[v] = static_cast<int>(group_of(v));
+    return d[v].norm();
+  });
+  if (!std::isfinite(farthest)) return;
+  if (guard && farthest > guard->slack()) guard->limit(x, d, moved_group);
+  for_each_vertex(count, [&](std::size_t v) { x[v] += d[v]; });
 }
 
 void correct_work(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
                   ConstVectors from, Vectors g, Vectors x) {
   const std::size_t count = x.size();
-  Groups groups = touching_groups(problem, function, guard);
+  const Groups groups(problem, function, guard);
+  const auto group_of = [&](std::size_t v) { return groups.of_vertex(v); };
+  struct Sums {
+    bool held = false;
+    double mass = 0, falls = 0;
+    Vec3 centre = Vec3::Zero(), shift = Vec3::Zero();
+    void operator+=(const Sums& other) {
+      held |= other.held, mass += other.mass, falls = std::max(falls, other.falls);
+      centre += other.centre, shift += other.shift;
+    }
+  };
+  const auto sums = sum_by_part<Sums>(count, groups.size(), group_of, [&](Sums& sum, std::size_t v) {
+    if (function.held(v)) {
+      sum.held = true;
+      return;
+    }
+    const double m = problem.masses[v];
+    const std::size_t part = problem.parts.empty() ? 0 : static_cast<std::size_t>(problem.parts[v]);
+    if (part < problem.accelerations.size())
+      sum.falls = std::max(sum.falls, problem.accelerations[part] * function.dt() * function.dt());
+    sum.mass += m;
+    sum.centre += m * x[v];
+    sum.shift += m * (x[v] - from[v]);
+  });
   std::vector<MovingGroup> all(groups.size());
-  for_each_outer_contact(problem, function, guard, groups, [&](std::size_t touching, const Mat3& stiffness) {
+  for_each_outer_contact(function, guard, groups, [&](std::size_t touching, const Mat3& stiffness) {
     all[touching].outside = true;
     all[touching].stiffness += stiffness;
   });
-  const auto group_of = [&](std::size_t v) { return groups.of(part_of(problem, v)); };
-  for (std::size_t v = 0; v < count; ++v) {
-    MovingGroup& group = all[group_of(v)];
-    if (function.held(v)) {
-      group.held = true;
-      continue;
-    }
-    const double m = problem.masses[v];
-    const std::size_t part = part_of(problem, v);
-    if (part < problem.accelerations.size())
-      group.falls = std::max(group.falls, problem.accelerations[part] * function.dt() * function.dt());
-    group.mass += m;
-    group.centre += m * x[v];
-    group.shift += m * (x[v] - from[v]);
-  }
-  for (MovingGroup& group : all) {
-    if (group.mass > 0) group.centre /= group.mass, group.shift /= group.mass;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    MovingGroup& group = all[i];
+    group.held = sums[i].held, group.mass = sums[i].mass, group.falls = sums[i].falls;
+    if (group.mass > 0) group.centre = sums[i].centre / group.mass, group.shift = sums[i].shift / group.mass;
     // A group is free along the surfaces it touches, but not against them.
     if (group.outside)
       group.shift = (Mat3::Identity() + group.stiffness / group.mass).ldlt().solve(group.shift).eval();
     if (group.held) group.shift.setZero();
   }
-  for (std::size_t v = 0; v < count; ++v) {
-    MovingGroup& group = all[group_of(v)];
-    if (function.held(v) || group.held || group.outside) continue;
+  const auto turning = sum_by_part<Turning>(count, groups.size(), group_of, [&](Turning& sum, std::size_t v) {
+    const MovingGroup& group = all[group_of(v)];
+    if (function.held(v) || group.held || group.outside) return;
     const Vec3 r = x[v] - group.centre;
     const double m = problem.masses[v];
-    group.turn += m * r.cross(x[v] - from[v]);
-    group.inertia += m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-  }
-  for (MovingGroup& group : all) {
-    const double least = 1e-12 * group.inertia.trace();
-    group.turn = least > 0 ? Vec3((group.inertia + least * Mat3::Identity()).ldlt().solve(group.turn))
-                           : Vec3(Vec3::Zero());
+    sum.add(m, r, m * r.cross(x[v] - from[v]));
+  });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Mat3& inertia = turning[i].inertia;
+    const double least = 1e-12 * inertia.trace();
+    all[i].turn = least > 0 ? Vec3((inertia + least * Mat3::Identity()).ldlt().solve(turning[i].momentum))
+                            : Vec3(Vec3::Zero());
   }
   std::vector<Vec3> s(count, Vec3::Zero()), hs(count);
-  for (std::size_t v = 0; v < count; ++v) {
+  for_each_vertex(count, [&](std::size_t v) {
+    if (function.held(v)) return;
     const MovingGroup& group = all[group_of(v)];
-    if (function.held(v)) continue;
     s[v] = x[v] - from[v];
     s[v] -= group.shift + group.turn.cross(x[v] - group.centre);
-  }
+  });
   function.hessian_product(x, s, hs);
-  for (std::size_t v = 0; v < count; ++v) {
-    if (function.held(v)) continue;
-    MovingGroup& group = all[group_of(v)];
-    group.work += g[v].dot(s[v]);
-    group.curvature += hs[v].dot(s[v]);
-    group.inertial += problem.masses[v] * s[v].squaredNorm();
+  struct Works {
+    double work = 0, curvature = 0, inertial = 0;
+    void operator+=(const Works& other) {
+      work += other.work, curvature += other.curvature, inertial += other.inertial;
+    }
+  };
+  const auto works = sum_by_part<Works>(count, groups.size(), group_of, [&](Works& sum, std::size_t v) {
+    if (function.held(v)) return;
+    sum.work += g[v].dot(s[v]);
+    sum.curvature += hs[v].dot(s[v]);
+    sum.inertial += problem.masses[v] * s[v].squaredNorm();
+  });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].work = works[i].work, all[i].curvature = works[i].curvature, all[i].inertial = works[i].inertial;
   }
-  double farthest = 0;
-  for (std::size_t v = 0; v < count; ++v) {
-    const MovingGroup& group = all[group_of(v)];
-    const double share = function.held(v) ? 0.0 : group.share();
+  const double farthest = largest(count, [&](std::size_t v) {
+    const double share = function.held(v) ? 0.0 : all[group_of(v)].share();
     s[v] *= share;
     hs[v] *= share;
-    if (!s[v].allFinite() || !hs[v].allFinite()) return;
-    farthest = std::max(farthest, s[v].norm());
-  }
-  if (farthest == 0 || !(function.max_step(x, s) > 1)) return;
+    return hs[v].allFinite() ? s[v].norm() : std::numeric_limits<double>::infinity();
+  });
+  if (farthest == 0 || !std::isfinite(farthest) || !(function.max_step(x, s) > 1)) return;
   if (guard && farthest > guard->slack()) {
     // A partly limited motion would change momenta.
     std::vector<Vec3> limited = s;
     guard->limit(x, limited);
     if (limited != s) return;
   }
-  for (std::size_t v = 0; v < count; ++v) {
+  for_each_vertex(count, [&](std::size_t v) {
     x[v] += s[v];
     g[v] += hs[v];
-  }
+  });
 }
 
 }  // namespace muslin

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "muslin/potential/stopping_time.hpp"
+#include "muslin/solver/part_sums.hpp"
 
 namespace muslin {
 namespace {
@@ -22,6 +23,11 @@ constexpr double solved_share = 0.5;
 
 }  // namespace
 
+template <class Sum, class Add>
+std::vector<Sum> StepError::sum(const Add& add) const {
+  return sum_by_part<Sum>(function_.size(), parts_.size(), [this](std::size_t v) { return part_of(v); }, add);
+}
+
 StepError::StepError(const StepProblem& problem, const IncrementalPotential& function, double tolerance)
     : problem_(problem), function_(function), tolerance_(tolerance) {
   std::size_t count = 1;
@@ -32,12 +38,10 @@ StepError::StepError(const StepProblem& problem, const IncrementalPotential& fun
 }
 
 void StepError::find_allowed(ConstVectors x) {
-  std::vector<double> squares(parts_.size(), 0.0);
   const double dt = function_.dt();
-  for (std::size_t v = 0; v < x.size(); ++v) {
-    if (!function_.held(v))
-      squares[part_of(v)] += problem_.masses[v] * (x[v] - function_.prediction()[v]).squaredNorm();
-  }
+  const auto squares = sum<double>([&](double& square, std::size_t v) {
+    if (!function_.held(v)) square += problem_.masses[v] * (x[v] - function_.prediction()[v]).squaredNorm();
+  });
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     Part& part = parts_[p];
     if (!(part.mass > 0)) continue;
@@ -52,8 +56,8 @@ void StepError::find_allowed(ConstVectors x) {
 
 bool StepError::bound(ConstVectors x, ConstVectors g) {
   find_allowed(x);
-  std::vector<double> squares(parts_.size(), 0.0);
-  for (std::size_t v = 0; v < g.size(); ++v) squares[part_of(v)] += g[v].squaredNorm() / problem_.masses[v];
+  const auto squares =
+      sum<double>([&](double& square, std::size_t v) { square += g[v].squaredNorm() / problem_.masses[v]; });
   bool good = true;
   largest_ = 0;
   for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -66,11 +70,17 @@ bool StepError::bound(ConstVectors x, ConstVectors g) {
 }
 
 void StepError::begin(ConstVectors g, ConstVectors z) {
-  for (Part& part : parts_) part.norm = part.foretold = 0;
-  for (std::size_t v = 0; v < g.size(); ++v) {
-    Part& part = parts_[part_of(v)];
-    part.norm += g[v].dot(z[v]);
-    if (!function_.held(v)) part.foretold += problem_.masses[v] * z[v].squaredNorm();
+  struct Sums {
+    double norm = 0, foretold = 0;
+    void operator+=(const Sums& other) { norm += other.norm, foretold += other.foretold; }
+  };
+  const auto sums = sum<Sums>([&](Sums& s, std::size_t v) {
+    s.norm += g[v].dot(z[v]);
+    if (!function_.held(v)) s.foretold += problem_.masses[v] * z[v].squaredNorm();
+  });
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    parts_[p].norm = sums[p].norm;
+    parts_[p].foretold = sums[p].foretold;
   }
 }
 
@@ -78,23 +88,27 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
                     ConstVectors d, double t) {
   struct Sums {
     double norm = 0, step = 0, gone = 0, cut = 0, largest_step = 0, largest_cut = 0, leak = 0, moved = 0;
+    void operator+=(const Sums& other) {
+      norm += other.norm, step += other.step, gone += other.gone, cut += other.cut;
+      largest_step = std::max(largest_step, other.largest_step);
+      largest_cut = std::max(largest_cut, other.largest_cut);
+      leak += other.leak, moved += other.moved;
+    }
   };
   find_allowed(x);
-  std::vector<Sums> sums(parts_.size());
-  for (std::size_t v = 0; v < g.size(); ++v) {
-    if (function_.held(v)) continue;
-    Sums& sum = sums[part_of(v)];
+  const auto sums = sum<Sums>([&](Sums& part, std::size_t v) {
+    if (function_.held(v)) return;
     const double m = problem_.masses[v], step = s[v].squaredNorm(), cut = (s[v] - t * d[v]).squaredNorm();
-    const Vec3 way = x[v] - from[v];
-    sum.norm += g[v].dot(z[v]);
-    sum.step += m * step;
-    sum.gone += m * t * t * d[v].squaredNorm();
-    sum.cut += m * cut;
-    sum.largest_step = std::max(sum.largest_step, step);
-    sum.largest_cut = std::max(sum.largest_cut, cut);
-    sum.leak += g[v].dot(way);
-    sum.moved += m * way.squaredNorm();
-  }
+    const Vec3 moved = x[v] - from[v];
+    part.norm += g[v].dot(z[v]);
+    part.step += m * step;
+    part.gone += m * t * t * d[v].squaredNorm();
+    part.cut += m * cut;
+    part.largest_step = std::max(part.largest_step, step);
+    part.largest_cut = std::max(part.largest_cut, cut);
+    part.leak += g[v].dot(moved);
+    part.moved += m * moved.squaredNorm();
+  });
   bool good = true;
   largest_ = worst_ratio_ = 0;
   for (std::size_t p = 0; p < parts_.size(); ++p) {

@@ -51,6 +51,8 @@ class StepError {
     return problem_.parts.empty() ? 0 : static_cast<std::size_t>(problem_.parts[v]);
   }
   void find_allowed(ConstVectors x);
+  template <class Sum, class Add>
+  std::vector<Sum> sum(const Add& add) const;
 
   const StepProblem& problem_;
   const IncrementalPotential& function_;
