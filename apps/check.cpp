@@ -27,7 +27,9 @@ void add_check(CLI::App& program) {
     if (std::filesystem::path(a->file).extension() == ".toml") {
       const Model model = build_model(read_scene(a->file, a->set), {{}, [] { return interrupted(); }});
       const std::vector<Crossing> crossings =
-          model.contact ? find_crossings(*model.contact, model.rest_positions) : std::vector<Crossing>();
+          model.contact
+              ? one_of_each_pair(*model.contact, find_crossings(*model.contact, model.rest_positions))
+              : std::vector<Crossing>();
       print(a->json ? describe_json(model, crossings) : describe_text(model, crossings));
       if (!a->picture.empty()) write_png(a->picture, draw_start(model, crossings));
       if (!crossings.empty()) {

@@ -1,5 +1,7 @@
 // Colliders and rigid bodies through the program: runs, resumes, thread counts, exports, pictures, and what
 // `check` says of a tangled start.
+#include <set>
+
 #include "apps/program.hpp"
 #include "support/sheet.hpp"
 #include <gmock/gmock.h>
@@ -202,6 +204,9 @@ TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
   ASSERT_GT(crossings.size(), 0u);
   EXPECT_EQ(crossings[0]["bodies"], (nlohmann::json{"cloth", "post"}));
   EXPECT_LT(std::abs(crossings[0]["at"][1].get<double>()), 0.06);
+  std::set<std::string> pairs;
+  for (const auto& crossing : crossings)
+    EXPECT_TRUE(pairs.insert(crossing["bodies"].dump() + crossing["faces"].dump()).second) << crossing.dump();
   std::vector<std::string> start = words(scratch, "run", 1);
   start.insert(start.end(), {"--set", high});
   const auto refused = run(scratch, start);

@@ -189,7 +189,7 @@ TEST(OddInput, AbsurdClothAndCollidersEndInAResultOrAnError) {
   };
   const std::vector<Case> cases = {
       {"body.cloth.thickness=1e200", 3, "`thickness` of [[body]] cloth is 1e+200"},
-      {"body.cloth.thickness=1e9", 3, "is closer than the thickness to"},
+      {"body.cloth.thickness=1e9", 3, "are closer to each other than their thickness allows"},
       {"body.cloth.thickness=0", 0, ""},
       {"body.cloth.warp=[1e9,0,0]", 0, ""},
       {"body.cloth.warp=[1e300,0,0]", 3, "`warp`"},

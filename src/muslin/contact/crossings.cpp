@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -117,13 +118,27 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
   return all;
 }
 
+std::vector<Crossing> one_of_each_pair(const ContactModel& model, std::span<const Crossing> found) {
+  using Feature = std::pair<int, int>;  // a body and a face
+  const auto feature = [&](int body, int triangle) {
+    return Feature(body, triangle < 0 || model.faces.empty() ? triangle : model.faces[index(triangle)]);
+  };
+  std::set<std::pair<Feature, Feature>> seen;
+  std::vector<Crossing> result;
+  for (const Crossing& c : found) {
+    const Feature a = feature(c.first_body, c.first_triangle), b = feature(c.second_body, c.second_triangle);
+    if (seen.insert({std::min(a, b), std::max(a, b)}).second) result.push_back(c);
+  }
+  return result;
+}
+
 std::string describe(const ContactModel& model, const Crossing& c) {
-  const char* verb = c.kind == Crossing::Kind::crossing    ? "crosses"
-                     : c.kind == Crossing::Kind::too_close ? "is closer than the thickness to"
-                                                           : "lies beneath";
-  return fmt::format("{} {} {} near ({:.4g}, {:.4g}, {:.4g}) m",
-                     feature_name(model, c.first_triangle, c.first_body), verb,
-                     feature_name(model, c.second_triangle, c.second_body), c.at.x(), c.at.y(), c.at.z());
+  const std::string first = feature_name(model, c.first_triangle, c.first_body),
+                    second = feature_name(model, c.second_triangle, c.second_body),
+                    at = fmt::format("near ({:.4g}, {:.4g}, {:.4g}) m", c.at.x(), c.at.y(), c.at.z());
+  if (c.kind == Crossing::Kind::crossing) return fmt::format("{} crosses {} {}", first, second, at);
+  if (c.kind == Crossing::Kind::beneath) return fmt::format("{} lies beneath {} {}", first, second, at);
+  return fmt::format("{} and {} are closer to each other than their thickness allows {}", first, second, at);
 }
 
 std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found) {
@@ -143,7 +158,7 @@ std::string advice(const ContactModel& model, ConstVectors q, std::span<const Cr
 }
 
 void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& place) {
-  const std::vector<Crossing> found = find_crossings(model, q);
+  const std::vector<Crossing> found = one_of_each_pair(model, find_crossings(model, q));
   if (found.empty()) return;
   std::string list;
   for (std::size_t i = 0; i < std::min(found.size(), listed); ++i)

@@ -258,7 +258,7 @@ std::string describe_text(const Model& model, std::span<const Crossing> crossing
                       steps_text(scene.time), solver_text(scene.solver));
   text += fmt::format(" (symplectic_euler would need steps below {:.3g} s)\n", stable_step(model));
   for (const std::string& warning : model.warnings) text += "warning: " + warning + "\n";
-  if (!crossings.empty()) text += counted(crossings.size(), "place", "places") + " where surfaces cross:\n";
+  if (!crossings.empty()) text += counted(crossings.size(), "place", "places") + " where surfaces cross or are too close:\n";
   for (std::size_t i = 0; i < std::min(crossings.size(), most_crossings); ++i)
     text += "  " + describe(*model.contact, crossings[i]) + "\n";
   if (crossings.size() > most_crossings)
