@@ -1,12 +1,16 @@
 #include "muslin/core/error.hpp"
 
+#include <utility>
+
+#include <fmt/format.h>
+
 namespace muslin {
 namespace {
 
 std::string sentence(const Place& place, const std::string& problem, const std::string& remedy) {
   std::string text = place.file;
-  if (place.line > 0) text += ":" + std::to_string(place.line);
-  if (place.line > 0 && place.column > 0) text += ":" + std::to_string(place.column);
+  if (place.line > 0) text += fmt::format(":{}", place.line);
+  if (place.line > 0 && place.column > 0) text += fmt::format(":{}", place.column);
   if (!text.empty()) text += ": ";
   text += problem;
   if (!remedy.empty()) text += "; " + remedy;

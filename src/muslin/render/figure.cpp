@@ -67,7 +67,7 @@ struct SvgWriter {
                        text.at.x(), text.at.y(), text.size, anchor, paint("fill", text.ink));
     if (text.bold) out += " font-weight=\"600\"";
     if (text.turned) out += fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", text.at.x(), text.at.y());
-    out += ">" + escaped(text.text) + "</text>\n";
+    out += fmt::format(">{}</text>\n", escaped(text.text));
   }
 };
 

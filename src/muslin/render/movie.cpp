@@ -19,7 +19,7 @@ namespace {
 int even(int side) { return side + side % 2; }
 
 fs::path part_of(const fs::path& path) {
-  return path.parent_path() / ("." + path.filename().string() + ".part");
+  return path.parent_path() / fmt::format(".{}.part", path.filename().string());
 }
 
 std::vector<std::string> command(const fs::path& part, int width, int height, const MovieOptions& options) {
