@@ -115,6 +115,24 @@ TEST(RunQuality, WarnsOfWhatMissedWasHeldBackOrCrosses) {
                                    HasSubstr("2 pairs of triangles still cross")));
 }
 
+TEST(RunQuality, WarnsOfLimitsOfStretchThatWereMissed) {
+  RunQuality quality;
+  quality.add(LimitedStretch{0, 1, 1.05, "hem"});
+  quality.add(LimitedStretch{1, 1.059, 1.05, "hem"});
+  quality.add(LimitedStretch{1, 1.15, 1.1, "sail"});
+  EXPECT_THAT(warnings_of(quality), testing::ElementsAre(HasSubstr("body sail: ")));
+  for (int frame = 2; frame < 5; ++frame) quality.add(LimitedStretch{frame, 4.3 - 0.5 * frame, 1.05, "hem"});
+  quality.add(LimitedStretch{7, 1.2, 1.05, "hem"});
+  EXPECT_THAT(
+      warnings_of(quality),
+      testing::ElementsAre(
+          testing::AllOf(HasSubstr("stretched to 1.15 of its length, beyond its `stretch_limit` of 1.1"),
+                         HasSubstr("in frame 1;")),
+          testing::AllOf(HasSubstr("body hem: the fabric was stretched to 3.3 of its length, beyond its "
+                                   "`stretch_limit` of 1.05, in frames 2 to 4 and 7; pins"),
+                         HasSubstr("raise `stretch_limit`"))));
+}
+
 TEST(RunDirectory, GoesOnWithATableOfAnEarlierVersion) {
   Scratch scratch;
   run_to(scratch / "run", 3, false);

@@ -2,8 +2,11 @@
 #include "muslin/cache/run.hpp"
 
 #include <cmath>
+#include <memory>
+#include <string>
 
 #include "cache/scratch.hpp"
+#include "support/sheet.hpp"
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -140,6 +143,76 @@ TEST(Run, GoesBackToAnyFrameWhoseStateWasKept) {
       Error);
   kept.directory = scratch / "nothing";
   EXPECT_THROW(run_scene(scene, kept), Error);
+}
+
+/// A sheet whose two held sides move apart by this share of its width in six frames.
+Scene pulled(double apart) {
+  Scene scene = parse_scene(R"([time]
+duration = 0.25
+frame_rate = 24
+steps_per_frame = 2
+[[body]]
+name = "cloth"
+mesh = "sheet.obj"
+model = "shell"
+stretch_limit = 1.05
+material = { areal_density = 0.15, membrane_warp = 100, bending_warp = 1e-5 }
+[[pin]]
+name = "left"
+where = { plane = { point = [0, 0, 0], normal = [1, 0, 0], distance = 0.01 } }
+[[pin]]
+name = "right"
+where = { plane = { point = [1, 0, 0], normal = [1, 0, 0], distance = 0.01 } }
+keyframes = [{ time = 0 }, { time = 0.25, translate = [)" +
+                                std::to_string(apart) + ", 0, 0] }]\n",
+                            "scene.toml");
+  scene.meshes["sheet.obj"] = std::make_shared<Mesh>(test::flat_sheet(4, 4, 1, 1));
+  return scene;
+}
+
+TEST(Run, WarnsOfAStretchLimitThatPinsOverride) {
+  Scratch scratch;
+  const auto of_limit =
+      testing::AllOf(testing::HasSubstr("body cloth"), testing::HasSubstr("`stretch_limit` of 1.05"));
+  const RunResult straight = run_scene(pulled(0.5), options(scratch / "straight", 6));
+  EXPECT_THAT(straight.warnings,
+              testing::Contains(testing::AllOf(of_limit, testing::HasSubstr("in frames 1 to 6;"))));
+  const auto summary = [&](const char* run) {
+    return nlohmann::json::parse(bytes_of(scratch / run / "run.json"));
+  };
+  const auto run = summary("straight");
+  EXPECT_EQ(run["warnings"], nlohmann::json(straight.warnings));
+  ASSERT_EQ(run["overstretched"].size(), 1u);
+  EXPECT_EQ(run["overstretched"][0]["body"], "cloth");
+  EXPECT_EQ(run["overstretched"][0]["limit"], 1.05);
+  EXPECT_GE(run["overstretched"][0]["stretch"].get<double>(), 1.5);
+
+  run_scene(pulled(0.5), options(scratch / "stopped", 3));
+  RunOptions resumed = options(scratch / "stopped", 6);
+  resumed.resume = true;
+  const RunResult again = run_scene(pulled(0.5), resumed);
+  EXPECT_EQ(again.first_frame, 3);
+  EXPECT_EQ(again.warnings, straight.warnings);
+  EXPECT_EQ(summary("stopped")["overstretched"], run["overstretched"]);
+  EXPECT_EQ(bytes_of(scratch / "stopped/stretch.csv"), bytes_of(scratch / "straight/stretch.csv"));
+
+  // Within the limit nothing is said.
+  const RunResult honest = run_scene(pulled(0.03), options(scratch / "honest", 6));
+  EXPECT_THAT(honest.warnings, testing::Not(testing::Contains(of_limit)));
+  EXPECT_TRUE(summary("honest")["overstretched"].empty());
+}
+
+TEST(Run, AStretchLimitMayBeNewOnResume) {
+  Scratch scratch;
+  Scene weak = pulled(0.5);
+  weak.bodies[0].stretch_limit.reset();
+  run_scene(weak, options(scratch / "run", 3));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "run/stretch.csv"));
+  RunOptions resumed = options(scratch / "run", 6);
+  resumed.resume = true;
+  EXPECT_THAT(run_scene(pulled(0.5), resumed).warnings,
+              testing::Contains(testing::HasSubstr("in frames 4 to 6;")));
+  EXPECT_THAT(bytes_of(scratch / "run/stretch.csv"), testing::StartsWith("frame,stretch,limit,body\n4,"));
 }
 
 }  // namespace

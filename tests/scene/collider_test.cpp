@@ -349,6 +349,25 @@ TEST_F(ColliderModel, CoarseMeshesAreWarnings) {
       testing::ElementsAre(HasSubstr("subdivide the mesh")));
 }
 
+TEST_F(ColliderModel, AStartWithinTheContactDistanceIsAWarning) {
+  const std::string sheet =
+      "[[body]]\nname = 'cloth'\nmesh = 'sheet.obj'\nmodel = 'shell'\nthickness = 0.002\n"
+      "material = { areal_density = 0.1, membrane_warp = 100, bending_warp = 1e-5 }\n";
+  // A gap of 1 mm to the floor, of 2 mm to the ball.
+  const std::string near = sheet +
+                           "[[collider]]\nname = 'floor'\nshape = 'plane'\ncenter = [0, -0.002, 0]\n"
+                           "[[collider]]\nname = 'ball'\nshape = 'sphere'\ncenter = [0.4, 0.103, 0.4]\n"
+                           "radius = 0.1\n[contact]\ndistance = ";
+  EXPECT_THAT(build(near + "0.01\n").warnings,
+              testing::ElementsAre(testing::AllOf(
+                  HasSubstr("cloth and floor start 0.001 m apart (the closest of 2 such pairs)"),
+                  HasSubstr("within 0.01 m"), HasSubstr("set `contact.distance` below the gap"))));
+  EXPECT_THAT(build(near + "0.0015\n").warnings, testing::ElementsAre(HasSubstr("start 0.001 m apart, and")));
+  EXPECT_THAT(build(near + "0.001\n").warnings, testing::IsEmpty());
+  // It is about pairs of bodies: a sheet is not too close to itself.
+  EXPECT_THAT(build(sheet + "[contact]\ndistance = 1\n").warnings, testing::IsEmpty());
+}
+
 TEST_F(ColliderModel, WrongCollidersAreErrorsThatSayWhatToDo) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"name = 'a'\n", "[[collider]] a has no `shape`; add `shape = …`, one of `plane`, `sphere`"},

@@ -160,11 +160,13 @@ TEST_F(ShellModel, StretchLimitIsATermOfItsOwn) {
 }
 
 TEST_F(ShellModel, StretchLimitIsRefusedWithItsPlace) {
-  for (const char* limit : {"1", "0.9", "10.1", "'5 %'"}) {
+  for (const char* limit : {"1", "0.9", "1.0000000000000002", "1.0009", "10.1", "'5 %'"}) {
     EXPECT_THAT(message(body("sheet.obj", "stretch_limit = " + std::string(limit) + "\n")),
                 testing::AllOf(HasSubstr("scene.toml:6:17"), HasSubstr("`stretch_limit`")))
         << limit;
   }
+  EXPECT_THAT(message(body("sheet.obj", "stretch_limit = 1\n")), HasSubstr("give a number from 1.001 to 10"));
+  EXPECT_EQ(message(body("sheet.obj", "stretch_limit = 1.001\n")), "no error");
   EXPECT_EQ(message(body("sheet.obj", "stretch_limit = 10\n")), "no error");
   EXPECT_THAT(
       message("[[body]]\nmesh = 'sheet.obj'\nvoxel_width = 1\nmaterial = 'cotton'\nstretch_limit = 1.1\n"),

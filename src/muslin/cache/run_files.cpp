@@ -69,7 +69,7 @@ bool is_tangled_run(const fs::path& directory) {
 namespace {
 
 const std::vector<std::string>& own_names() {
-  static const std::vector<std::string> names = {"scene.toml", "diagnostics.csv", "probes.csv",
+  static const std::vector<std::string> names = {"scene.toml", "diagnostics.csv", "probes.csv", "stretch.csv",
                                                  "stats.json", "selections.json", "run.json"};
   return names;
 }

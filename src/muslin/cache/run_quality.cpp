@@ -10,6 +10,9 @@ namespace {
 
 constexpr double share_to_warn = 0.01;  // of the steps
 constexpr std::size_t most_ranges = 8;
+/// Beyond a limit of stretch, as a share of the rest length: the limit is stiff, not hard, and a fall that it
+/// stops goes this far past it.
+constexpr double stretch_slack = 0.01;
 
 bool ends_in(const std::vector<int>& frames, int last) { return !frames.empty() && frames.back() == last; }
 
@@ -36,7 +39,25 @@ std::string crossings_text(const RunQuality& quality) {
                      pairs == 1 ? "1 pair" : fmt::format("{} pairs", pairs), pairs == 1 ? "crosses" : "cross");
 }
 
+std::string overstretched_text(const RunQuality::Overstretched& shell) {
+  return fmt::format(
+      "body {}: the fabric was stretched to {:.4g} of its length, beyond its `stretch_limit` of {:.4g}, in "
+      "{}; pins, colliders or an abrupt stop pull it farther than the limit allows: move them closer, slow "
+      "them down, or raise `stretch_limit`",
+      shell.body, shell.stretch, shell.limit, describe_frames(shell.frames));
+}
+
 }  // namespace
+
+void RunQuality::add(const LimitedStretch& row) {
+  if (!(row.stretch > row.limit + stretch_slack)) return;
+  auto shell = std::find_if(overstretched.begin(), overstretched.end(),
+                            [&](const Overstretched& other) { return other.body == row.body; });
+  if (shell == overstretched.end()) shell = overstretched.insert(shell, {row.body, {}, 0, 0});
+  shell->frames.push_back(row.frame);
+  if (row.stretch - row.limit > shell->stretch - shell->limit)
+    shell->stretch = row.stretch, shell->limit = row.limit;
+}
 
 void RunQuality::add(const Diagnostics& row) {
   steps += row.steps;
@@ -75,6 +96,8 @@ std::vector<std::string> warnings_of(const RunQuality& quality) {
     warnings.push_back(missed_text(quality));
   if (!quality.frames_held_back.empty()) warnings.push_back(held_back_text(quality));
   if (quality.crossings_at_end > 0) warnings.push_back(crossings_text(quality));
+  for (const RunQuality::Overstretched& shell : quality.overstretched)
+    warnings.push_back(overstretched_text(shell));
   return warnings;
 }
 

@@ -1,4 +1,5 @@
-// RunQuality collects the defects of a run: missed tolerances, held-back vertices, crossings.
+// RunQuality collects the defects of a run: missed tolerances, held-back vertices, crossings, missed limits
+// of stretch.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,15 @@
 
 namespace muslin {
 
-/// Summed over the rows of diagnostics.csv, those of earlier sessions as well.
+/// Summed over the rows of diagnostics.csv and stretch.csv, those of earlier sessions as well.
 struct RunQuality {
+  /// A shell that was stretched beyond its `stretch_limit`.
+  struct Overstretched {
+    std::string body;
+    std::vector<int> frames;        ///< at whose end it was
+    double stretch = 0, limit = 0;  ///< in the frame in which it was farthest beyond
+  };
+
   std::int64_t steps = 0, converged_steps = 0;
   double worst_error = 0;         ///< [m]
   std::vector<int> frames_missed;  ///< with steps that missed their tolerance
@@ -18,9 +26,11 @@ struct RunQuality {
   int most_held_back = 0;             ///< vertices, in the worst frame
   std::vector<int> frames_crossing;   ///< at whose end triangles cross
   int crossings_at_end = 0;           ///< pairs of triangles
+  std::vector<Overstretched> overstretched;
   int last_frame = 0;
 
   void add(const Diagnostics& row);
+  void add(const LimitedStretch& row);
 };
 
 /// "frame 3", "frames 12 to 15 and 20"; of many, the first ranges and how many frames more. `frames` ascend

@@ -66,6 +66,12 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string as_text(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 
+bool has_stretch_limit(const Model& model) {
+  const std::vector<BodySettings>& bodies = model.scene.bodies;
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const BodySettings& body) { return body.stretch_limit.has_value(); });
+}
+
 /// The open caches of a body.
 struct BodyCaches {
   Pc2Writer skin;
@@ -121,6 +127,7 @@ struct RunWriter::Parts {
   DirectoryLock lock;
   std::vector<BodyCaches> caches;
   OutputFile diagnostics, probes;
+  std::optional<OutputFile> stretches;  ///< only if a shell has, or in an earlier session had, a limit
   bool resumed = false;
   std::vector<std::string> changes;
   Json sessions = Json::array();
@@ -207,9 +214,9 @@ void RunWriter::Parts::open_files(int frames) {
     caches.back().contour = open(files.contour_cache, body.contour.mesh.vertex_count());
     caches.back().lattice = open(files.lattice_cache, static_cast<std::size_t>(body.vertex_count));
   }
-  const auto table = [&](const char* name, std::string_view header) {
+  const auto table = [&](const char* name, std::string_view header, bool is_there) {
     const fs::path path = directory / name;
-    if (frames == 0) {
+    if (frames == 0 || !is_there) {
       OutputFile file(path, OutputFile::Mode::replace);
       file.append(header);
       return file;
@@ -223,8 +230,14 @@ void RunWriter::Parts::open_files(int frames) {
     file.truncate(kept);
     return file;
   };
-  diagnostics = table("diagnostics.csv", diagnostics_header);
-  probes = table("probes.csv", probes_header);
+  diagnostics = table("diagnostics.csv", diagnostics_header, true);
+  probes = table("probes.csv", probes_header, true);
+  // A limit may be new on resume.
+  std::error_code code;
+  const bool has_stretches = fs::exists(directory / "stretch.csv", code);
+  stretches.reset();
+  if (has_stretches || has_stretch_limit(model()))
+    stretches = table("stretch.csv", stretch_header, has_stretches);
 }
 
 /// A table that an earlier version began gets the columns of this one, as it can have only one kind of rows.
@@ -268,6 +281,8 @@ bool RunWriter::Parts::resume() {
       open_files(file.frame + 1);
       quality = {};
       for (const Diagnostics& row : read_diagnostics(directory / "diagnostics.csv")) quality.add(row);
+      if (stretches)
+        for (const LimitedStretch& row : read_stretches(directory / "stretch.csv")) quality.add(row);
       first_frame = file.frame;
       sessions = run["timings"].value("sessions", Json::array());
       return true;
@@ -302,6 +317,12 @@ void RunWriter::Parts::append_rows() {
   diagnostics.append(diagnostics_row(simulation.diagnostics()));
   probes.append(probe_rows(simulation));
   quality.add(simulation.diagnostics());
+  if (!stretches) return;
+  for (const LimitedStretch& row :
+       limited_stretches(model(), simulation.state().positions, simulation.frame())) {
+    stretches->append(stretch_row(row));
+    quality.add(row);
+  }
 }
 
 void RunWriter::Parts::sync() {
@@ -312,6 +333,7 @@ void RunWriter::Parts::sync() {
   }
   diagnostics.sync();
   probes.sync();
+  if (stretches) stretches->sync();
   last_sync = Clock::now();
 }
 
@@ -381,6 +403,13 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
                         {"frames_missed", quality.frames_missed}};
   run["held_back"] = {{"frames", quality.frames_held_back}, {"most", quality.most_held_back}};
   run["crossings"] = {{"at_end", quality.crossings_at_end}, {"frames", quality.frames_crossing}};
+  run["overstretched"] = Json::array();
+  for (const RunQuality::Overstretched& shell : quality.overstretched) {
+    run["overstretched"].push_back({{"body", shell.body},
+                                    {"frames", shell.frames},
+                                    {"stretch", shell.stretch},
+                                    {"limit", shell.limit}});
+  }
   Json all = sessions;
   all.push_back({{"from_frame", first_frame},
                  {"to_frame", simulation.frame()},

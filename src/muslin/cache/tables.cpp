@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -35,6 +36,7 @@ const std::string_view diagnostics_header =
     "newton_iterations,linear_iterations,residual,max_stretch,min_distance,wall_ms,steps,converged_steps,"
     "error,unbalanced,crossings,held_back,penetration\n";
 const std::string_view probes_header = "frame,time,name,x,y,z,vx,vy,vz\n";
+const std::string_view stretch_header = "frame,stretch,limit,body\n";
 
 std::string diagnostics_row(const Diagnostics& row) {
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{},{},{}\n", row.frame,
@@ -109,6 +111,38 @@ std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path) {
     row.held_back = static_cast<int>(numbers[21]);
     row.penetration = numbers[22];
     rows.push_back(row);
+    at = end + 1;
+  }
+  return rows;
+}
+
+std::string stretch_row(const LimitedStretch& row) {
+  return fmt::format("{},{},{},{}\n", row.frame, row.stretch, row.limit, quoted(row.body));
+}
+
+std::vector<LimitedStretch> read_stretches(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  if (!text.starts_with(stretch_header))
+    throw Error(ErrorKind::input, {path.string(), 1}, "this is not a table of stretches",
+                "run the scene again");
+  std::vector<LimitedStretch> rows;
+  int line = 1;
+  for (std::size_t at = stretch_header.size(); at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string::npos) break;
+    ++line;
+    std::array<double, 3> numbers{};
+    const char* field = text.c_str() + at;
+    for (double& number : numbers) {
+      char* after = nullptr;
+      number = std::strtod(field, &after);
+      if (after == field || *after != ',')
+        throw Error(ErrorKind::input, {path.string(), line}, "a number is missing", "run the scene again");
+      field = after + 1;
+    }
+    std::string body(field, text.c_str() + end);
+    if (body.size() > 1 && body.front() == '"') body = body.substr(1, body.size() - 2);
+    rows.push_back({static_cast<int>(numbers[0]), numbers[1], numbers[2], std::move(body)});
     at = end + 1;
   }
   return rows;

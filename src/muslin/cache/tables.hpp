@@ -1,4 +1,4 @@
-// Reads and writes the tables of a run: diagnostics.csv and probes.csv.
+// Reads and writes the tables of a run: diagnostics.csv, probes.csv and stretch.csv.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +13,19 @@ namespace muslin {
 /// First lines of the tables, with their line ends.
 extern const std::string_view diagnostics_header;
 extern const std::string_view probes_header;
+extern const std::string_view stretch_header;
 
 /// One line, numbers so that reading them gives the same double; infinity is `inf`.
 std::string diagnostics_row(const Diagnostics& row);
 /// One line per probe of the model.
 std::string probe_rows(const Simulation& simulation);
+std::string stretch_row(const LimitedStretch& row);
 
 /// The rows of a diagnostics table; an unfinished last line is left out. Tables of earlier versions have no
 /// columns after wall_ms; these are 0 then. Errors: file, input.
 std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path);
+/// The rows of a table of stretches; an unfinished last line is left out. Errors: file, input.
+std::vector<LimitedStretch> read_stretches(const std::filesystem::path& path);
 
 /// Returns the length of the part of a table up to and including the rows of `last_frame` (the first column).
 /// 0 if the text is not a table.

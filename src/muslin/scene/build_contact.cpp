@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "muslin/contact/contact_candidates.hpp"
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/material/lattice_moduli.hpp"
@@ -24,6 +26,8 @@ constexpr double stiffness_share = 0.15;
 /// With the least stiffness this share of its points carries the body's weight at half the range.
 constexpr double carrying_share = 0.1, gravity = 9.81;
 constexpr double floor_share = 0.005;       // of the gap floor, in d̂
+/// What rests on something has a gap of a little less than d̂; below this share of it, it is pressed.
+constexpr double pressed_share = 0.9;
 
 double lattice_stiffness(const Body& body, const BodySettings& settings) {
   const Material& m = settings.material;
@@ -269,8 +273,43 @@ class ContactBuilder {
   double largest_ = 0, shortest_edge_ = infinite;
 };
 
+/// Warns of bodies that contact pushes apart as soon as the run starts. Surfaces that cross or are closer
+/// than their thickness are errors of their own (find_crossings); of pairs within a body the range is smaller
+/// than the gap at rest.
+void warn_of_pressed_start(const ContactModel& contact, std::vector<std::string>& warnings) {
+  if (!(contact.distance > 0)) return;
+  const ContactSurface& surface = *contact.surface;
+  ContactCandidates candidates(contact.surface, contact.rest, contact.distance);
+  candidates.update(contact.rest, contact.rest, 0);
+  std::map<std::pair<int, int>, double> gaps;  // the smallest, by bodies
+  for (const ContactPair& pair : candidates.pairs()) {
+    const int first = surface.body_of(pair.points[0]);
+    const int second = surface.body_of(pair.points[static_cast<std::size_t>(pair.point_count() - 1)]);
+    if (first == second) continue;
+    const double gap = pair_geometry(surface, pair, contact.rest).distance - pair.thickness;
+    if (gap >= pressed_share * pair.range) continue;
+    const auto [at, is_new] = gaps.try_emplace(std::minmax(first, second), gap);
+    if (!is_new) at->second = std::min(at->second, gap);
+  }
+  std::erase_if(gaps, [](const auto& bodies) { return !(bodies.second > 0); });
+  if (gaps.empty()) return;
+  const auto closest = std::min_element(gaps.begin(), gaps.end(), [](const auto& a, const auto& b) {
+    return a.second < b.second;
+  });
+  const auto name = [&](int body) { return contact.names[static_cast<std::size_t>(body)]; };
+  std::string others;
+  if (gaps.size() > 1) others = fmt::format(" (the closest of {} such pairs)", gaps.size());
+  warnings.push_back(fmt::format(
+      "{} and {} start {:.3g} m apart{}, and contact, which acts within {:.3g} m, pushes them apart at once; "
+      "set `contact.distance` below the gap, or move them apart",
+      name(closest->first.first), name(closest->first.second), closest->second, others, contact.distance));
+}
+
 }  // namespace
 
-void build_contact(Model& model) { ContactBuilder(model).build(); }
+void build_contact(Model& model) {
+  ContactBuilder(model).build();
+  if (model.contact) warn_of_pressed_start(*model.contact, model.warnings);
+}
 
 }  // namespace muslin

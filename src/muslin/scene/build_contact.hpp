@@ -21,7 +21,8 @@ namespace muslin {
 /// share); of a rigid body mass/step², which limits its penetration to its free fall in one step; colliders
 /// take that of the other.
 ///
-/// Needs all bodies; adds to model.warnings. Errors: input, if the integrator is explicit.
+/// Needs all bodies; adds to model.warnings, also if bodies start so close that contact pushes them apart.
+/// Errors: input, if the integrator is explicit.
 void build_contact(Model& model);
 
 }  // namespace muslin

@@ -141,6 +141,10 @@ BodyModel read_model(const TomlTable& body) {
   return model;
 }
 
+/// The stiffness of a limit grows as 1/(limit − 1) (energy/stretch_limit.hpp) without bound: a limit a
+/// rounding error above 1 asks for 1e16 times the weight of the cloth. At this one, a millimetre in a metre,
+/// it is five times that of low_stretch_limit, and the range in which it rises is still far above rounding.
+constexpr double least_stretch_limit = 1.001;
 /// Below this, products with blocks use double at usual resolutions, which is many times slower.
 constexpr double low_stretch_limit = 1.005;
 
@@ -153,7 +157,7 @@ void read_shell_settings(const TomlTable& table, BodySettings& body, std::vector
   }
   if (table.has("warp")) body.warp = read_direction(table, "warp", "[1, 0, 0]");
   if (table.has("stretch_limit")) {
-    body.stretch_limit = table.number("stretch_limit", "", {1, 10, true});
+    body.stretch_limit = table.number("stretch_limit", "", {least_stretch_limit, 10, false});
     if (*body.stretch_limit < low_stretch_limit) {
       warnings.push_back(fmt::format(
           "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",

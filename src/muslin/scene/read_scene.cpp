@@ -53,7 +53,28 @@ TimeSettings read_time(const TomlTable& top) {
   return time;
 }
 
-SolverSettings read_solver(const TomlTable& top) {
+/// Warns of settings that the integrator does not use.
+void warn_of_unused(const TomlTable& table, const SolverSettings& solver, const TimeSettings& time,
+                    std::vector<std::string>& warnings) {
+  const Integrator integrator = solver.integrator;
+  const bool newton = integrator == Integrator::implicit_euler || integrator == Integrator::bdf2;
+  const bool linear = integrator == Integrator::linearly_implicit_euler;
+  const std::string& name = name_of(integrator_names(), integrator);
+  const auto warn = [&](const char* key, const std::string& effect, const std::string& remedy) {
+    if (table.has(key))
+      warnings.push_back(fmt::format("[solver] `{}` has no effect on {}: take it out, {}", key, effect, remedy));
+  };
+  if (!linear) warn("linear_tolerance", name, "or choose `integrator = \"linearly_implicit_euler\"`");
+  if (newton) return;
+  const std::string choose = "or choose `integrator = \"implicit_euler\"` or `\"bdf2\"`";
+  warn("tolerance", name, choose);
+  if (!linear) warn("effort", name, choose);
+  // Automatic steps are longer for drafts with any integrator.
+  if (linear && time.steps_per_frame)
+    warn("effort", name + " with a number of `steps_per_frame`", "set `steps_per_frame = \"auto\"`, " + choose);
+}
+
+SolverSettings read_solver(const TomlTable& top, const TimeSettings& time, std::vector<std::string>& warnings) {
   SolverSettings solver;
   const auto table = top.table("solver", known_keys("solver"));
   if (!table) return solver;
@@ -63,6 +84,7 @@ SolverSettings read_solver(const TomlTable& top) {
   if (table->has("tolerance")) solver.tolerance = table->number("tolerance", "", {0, 1, true});
   solver.linear_tolerance =
       table->number("linear_tolerance", "", {1e-16, 0.5, false}, solver.linear_tolerance);
+  warn_of_unused(*table, solver, time, warnings);
   return solver;
 }
 
@@ -252,7 +274,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file,
   scene.text = text;
   scene.title = top.string("title", file.stem().string());
   scene.time = read_time(top);
-  scene.solver = read_solver(top);
+  scene.solver = read_solver(top, scene.time, scene.warnings);
   UniqueNames bodies, pins, forces, probes;
   read_list(top, "body", bodies, scene.bodies, [&](const TomlValue& value, std::size_t index) {
     return read_body(value, index, file.parent_path(), scene.warnings);

@@ -86,7 +86,7 @@ struct BodySettings {
   Place rest_mesh_place;
   std::optional<Vec3>
       warp;  ///< direction of the warp threads; default: along the texture's u, or the longest side
-  std::optional<double> stretch_limit;  ///< of length to rest length in every direction, > 1; default: none
+  std::optional<double> stretch_limit;  ///< of length to rest length in every direction; default: none
   // For lattices.
   std::optional<double> thickness;  ///< of an open mesh [m]; default: one voxel width
   LatticeSettings lattice;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "muslin/core/parallel.hpp"
 
@@ -43,6 +44,16 @@ double max_stretch(const Model& model, ConstVectors x) {
   double largest = model.bodies.empty() ? 1 : 0;
   for (const Body& body : model.bodies) largest = std::max(largest, max_stretch(body, model.of(body, x)));
   return largest;
+}
+
+std::vector<LimitedStretch> limited_stretches(const Model& model, ConstVectors x, int frame) {
+  std::vector<LimitedStretch> rows;
+  for (std::size_t b = 0; b < model.scene.bodies.size(); ++b) {
+    const std::optional<double>& limit = model.scene.bodies[b].stretch_limit;
+    const Body& body = model.bodies[b];
+    if (limit) rows.push_back({frame, max_stretch(body, model.of(body, x)), *limit, body.name});
+  }
+  return rows;
 }
 
 }  // namespace muslin

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "muslin/core/vectors.hpp"
 #include "muslin/scene/model.hpp"
@@ -99,5 +101,16 @@ struct RunCosts {
 /// The largest ratio of length and rest length in all bodies at x (#V by 3 [m]): of a spring, or of a shell
 /// in any direction. 1 without bodies.
 double max_stretch(const Model& model, ConstVectors x);
+
+/// The stretch of a shell that has a `stretch_limit`, at the end of a frame.
+struct LimitedStretch {
+  int frame = 0;
+  double stretch = 1;  ///< the largest of a triangle in any direction
+  double limit = 0;    ///< its `stretch_limit`
+  std::string body;
+};
+
+/// One for each shell with a limit, at x (#V by 3 [m]); `frame` is written into each.
+std::vector<LimitedStretch> limited_stretches(const Model& model, ConstVectors x, int frame);
 
 }  // namespace muslin
