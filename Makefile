@@ -39,8 +39,17 @@ test-hosts: build ## the Blender add-on as an extension of 4.2, USD and Alembic:
 blender-addon:    ## out/muslin-blender-VERSION.zip, for Blender 3.4 and later
 	blender/package
 
-tidy:             ## clang-tidy over the sources
-	run-clang-tidy -quiet -p $(BUILD) 'src/muslin/.*|apps/.*'
+# Clang 16 or later.
+CLANG ?= $(shell command -v clang++-19 || command -v clang++)
+FUZZ_SECONDS ?= 20
+
+fuzz:             ## every fuzzer for FUZZ_SECONDS each; inputs that fail are left in build/
+	cmake --preset fuzz -DCMAKE_CXX_COMPILER=$(CLANG)
+	cmake --build build/fuzz -j $(JOBS)
+	tests/fuzz/run build/fuzz/tests/fuzz $(FUZZ_SECONDS)
+
+tidy:             ## clang-tidy over the sources that have changed since TIDY_SINCE, or all
+	tools/tidy $(BUILD) $(TIDY_SINCE)
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i

@@ -7,6 +7,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/scene/scene.hpp"
+#include "muslin/scene/validate.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string text(reinterpret_cast<const char*>(data), size);
@@ -16,10 +17,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     settings.push_back(text.substr(1, end == std::string::npos ? end : end - 1));
     text.erase(0, end == std::string::npos ? text.size() : end + 1);
   }
+  muslin::Scene scene;
   try {
-    muslin::parse_scene(text, "scene.toml", settings);
+    scene = muslin::parse_scene(text, "scene.toml", settings);
   } catch (const muslin::Error&) {
-    // An Error is a right answer.
+    return 0;  // an Error is a right answer
   }
+  muslin::validate(scene);  // accepts what the reader accepts
   return 0;
 }
