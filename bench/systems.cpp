@@ -10,7 +10,7 @@
 #include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/solver/incremental_potential.hpp"
-#include "muslin/solver/inner_solver.hpp"
+#include "muslin/solver/pcg_solver.hpp"
 
 namespace muslin::bench {
 
@@ -23,19 +23,19 @@ std::map<std::string, double> lattice_system(const Problem& problem, double dt) 
   std::vector<Vec3> g(count), s(count);
   function.gradient(state.positions, g);
   std::map<std::string, double> counters;
-  InnerSolver inner;
+  PcgSolver pcg;
   for (const char* tolerance : {"1e-1", "1e-3", "1e-5"}) {
     LinearSettings linear;
     linear.tolerance = std::stod(tolerance);
     // The first solve shows how long one takes; the second one knows.
-    inner.begin_step();
-    inner.linearize(function, state.positions);
-    inner.project();
+    pcg.begin_step();
+    pcg.linearize(function, state.positions);
+    pcg.project();
     double norm;
-    inner.solve(g, linear, s, norm);
+    pcg.solve(g, linear, s, norm);
     LinearReport report;
     const Clock clock;
-    report = inner.solve(g, linear, s, norm);
+    report = pcg.solve(g, linear, s, norm);
     counters[std::string("system_") + tolerance + "_ms"] = 1e3 * clock.seconds();
     counters[std::string("iterations_") + tolerance] = report.iterations;
   }

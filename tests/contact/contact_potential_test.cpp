@@ -18,6 +18,7 @@
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/contact/contact_hessian.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
@@ -203,16 +204,18 @@ TEST(ContactPotential, LinearizesToItsHessian) {
 
 /// A lone point over a fixed sheet, whose surface is softer and decides: 1000 N/m.
 struct PointOverSheet {
-  test::ClothGrid sheet{5, 5, 0.1};
+  test::ClothGrid sheet;
   double range = 0.002;
   double alone = -1000 * contact_law(range / 2, range).slope;  ///< force of one contact at half the range [N]
   std::shared_ptr<const ContactSurface> surface;
-  std::shared_ptr<const SurfaceMap> map = std::make_shared<SurfaceMap>(SurfaceMap::identity(26));
+  std::shared_ptr<const SurfaceMap> map;
 
-  PointOverSheet() {
+  explicit PointOverSheet(int side = 5, double spacing = 0.1) : sheet(side, side, spacing) {
+    const int point = side * side;
+    map = std::make_shared<SurfaceMap>(SurfaceMap::identity(static_cast<std::size_t>(point) + 1));
     std::vector<Vec3i> triangles = sheet.triangles;
-    triangles.emplace_back(25, 25, 25);
-    std::vector<int> bodies(25, 0);
+    triangles.emplace_back(point, point, point);
+    std::vector<int> bodies(static_cast<std::size_t>(point), 0);
     bodies.push_back(1);
     surface = std::make_shared<ContactSurface>(
         triangles, bodies, std::vector<ContactBody>{{0, false, false, INFINITY}, {0, false, false, 1000}});
@@ -224,7 +227,7 @@ struct PointOverSheet {
     ContactCandidates candidates(surface, q, range);
     candidates.update(q, q, range / 2);
     const ContactPotential w(test::distances_at(candidates, q), map, q, {0, 1e-5}, q);
-    return -test::gradient(w, q)[25];
+    return -test::gradient(w, q).back();
   }
   /// Of the sheet at x, z.
   double height(double x, double z) const {
@@ -247,14 +250,22 @@ TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
     EXPECT_NEAR(scene.force(over).y(), scene.alone, 1e-9) << over.transpose();
 }
 
+TEST(ContactPotential, CountsItOnceAmongAThousandTriangles) {
+  // The range is ten edges of the sheet.
+  const PointOverSheet scene(41, 0.0002);
+  for (const Vec3& over :
+       {Vec3(0.00413, 0.001, 0.00411), Vec3(0.004, 0.001, 0.0041), Vec3(0.004, 0.001, 0.004)})
+    EXPECT_NEAR(scene.force(over).y(), scene.alone, 1e-9) << over.transpose();
+}
+
 TEST(MergedContacts, OfBallsNearToManyTrianglesNameEachPlaceOnceAndLoseNothing) {
-  // Two balls over cloth of millimetres: more contacts of one centre than are searched one by one.
-  constexpr double radius = 0.25, range = 0.004;
+  // Two balls over cloth of millimetres, near to a thousand triangles each, some of them the same.
+  constexpr double radius = 0.25, range = 0.001;
   constexpr int side = 24, sheet_points = side * side;
   const test::ClothGrid sheet(side, side, 0.002);
   std::vector<Vec3> x = sheet.positions;
-  x.push_back(Vec3(0.01, radius + 0.001, 0.012));
-  x.push_back(Vec3(0.035, radius + 0.002, 0.03));
+  x.push_back(Vec3(0.012, radius + 0.0002, 0.012));
+  x.push_back(Vec3(0.035, radius + 0.0003, 0.033));
   std::vector<Vec3i> triangles = sheet.triangles;
   std::vector<int> bodies(sheet_points, 0);
   for (int ball = 0; ball < 2; ++ball) {
@@ -267,12 +278,27 @@ TEST(MergedContacts, OfBallsNearToManyTrianglesNameEachPlaceOnceAndLoseNothing) 
   ContactCandidates candidates(surface, x, range);
   candidates.update(x, x, range / 2);
   const PairDistances distances = test::distances_at(candidates, x);
+  set_thread_count(1);
   const std::vector<ContactTerm> terms = contact_terms(distances, 1.0 / 240);
+  set_thread_count(4);
+  const std::vector<ContactTerm> again = contact_terms(distances, 1.0 / 240);
+  set_thread_count(0);
+  ASSERT_EQ(again.size(), terms.size());
+  for (std::size_t i = 0; i < terms.size(); ++i) EXPECT_EQ(again[i].points, terms[i].points);
   const std::vector<MergedContact> merged = merged_contacts(*surface, terms, x);
   for (int ball = 0; ball < 2; ++ball) {
+    // A ball meets cloth so fine at its vertices, at each once.
+    std::set<int> near, met;
+    for (int v = 0; v < sheet_points; ++v) {
+      const double gap =
+          (x[static_cast<std::size_t>(v)] - x[static_cast<std::size_t>(sheet_points + ball)]).norm() - radius;
+      if (gap < PairDistances::ranges_known * range) near.insert(v);
+    }
     Vec3 expected = Vec3::Zero(), sum = expected;
     for (const ContactTerm& term : terms) {
       if (term.points[0] != sheet_points + ball) continue;
+      EXPECT_TRUE(met.insert(term.points[1]).second) << "twice";
+      EXPECT_EQ(term.stiffness, ball == 0 ? 1000 : 500);
       const PairGeometry at = term_geometry(*surface, term, x);
       expected += term.stiffness * contact_law(at.distance - term.thickness, term.range).slope * at.normal;
     }
@@ -282,6 +308,7 @@ TEST(MergedContacts, OfBallsNearToManyTrianglesNameEachPlaceOnceAndLoseNothing) 
       EXPECT_TRUE(places.insert({contact.first_size, contact.points}).second) << "named twice";
       sum += contact.slope * contact.normal;
     }
+    EXPECT_EQ(met, near);
     EXPECT_GT(places.size(), 50U);
     EXPECT_LT((sum - expected).norm(), 1e-9 * expected.norm());
   }

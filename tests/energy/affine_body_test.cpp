@@ -76,7 +76,7 @@ TEST(AffineBodyEnergy, LinearizationIsPositiveSemidefiniteAndTheHessianWhereStre
         from[v] = Float4{static_cast<float>(p[v].x()), static_cast<float>(p[v].y()),
                          static_cast<float>(p[v].z()), 0};
       }
-      const double curvature = h.add_rest_product(from.data(), to.data());
+      const double curvature = h.add_remainder_product(from.data(), to.data());
       EXPECT_GE(curvature, 0);
       const double exact = 2 * test::inner(p, test::hessian_product(energy, x, p));
       if (scale > 1) {

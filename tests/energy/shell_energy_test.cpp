@@ -109,7 +109,7 @@ TEST(ShellEnergy, MatrixIsTheProjectedStiffnessWhereMassesHoldNothing) {
     std::vector<Mat3> blocks(x.size(), Mat3::Zero());
     for (const ShellEnergy* energy : energies) energy->add_diagonal_blocks(x, blocks);
     for (std::size_t v = 0; v < x.size(); v += 50)
-      EXPECT_NEAR(h.rest_upper().data().y[v], 0.5 * blocks[v](0, 1), 1e-5 * blocks[v].norm());
+      EXPECT_NEAR(h.remainder_upper().data().y[v], 0.5 * blocks[v](0, 1), 1e-5 * blocks[v].norm());
   }
 }
 

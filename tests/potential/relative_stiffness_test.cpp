@@ -26,7 +26,7 @@ struct Terms {
     stiffness.resize(static_cast<std::size_t>(count), 4 * static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       const Vec3 n = Vec3(any(random), any(random), any(random)).normalized();
-      const double along = 5 + any(random), across = 1 + any(random);
+      const double normal_stiffness = 5 + any(random), tangential = 1 + any(random);
       std::vector<RelativeStiffness::Weight> weights;
       Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3, 3 * vertices);
       for (int k = 0; k < 4; ++k) {
@@ -36,8 +36,9 @@ struct Terms {
         weights.push_back({v, static_cast<float>(w)});
         a.block<3, 3>(0, 3 * v) = static_cast<double>(static_cast<float>(w)) * Mat3::Identity();
       }
-      stiffness.set(static_cast<std::size_t>(i), 4 * static_cast<std::size_t>(i), n, along, across, weights);
-      const Mat3 block = across * Mat3::Identity() + (along - across) * n * n.transpose();
+      stiffness.set(static_cast<std::size_t>(i), 4 * static_cast<std::size_t>(i), n, normal_stiffness,
+                    tangential, weights);
+      const Mat3 block = tangential * Mat3::Identity() + (normal_stiffness - tangential) * n * n.transpose();
       dense += a.transpose() * block * a;
     }
     stiffness.finish();

@@ -26,7 +26,7 @@ namespace {
 class ByVertex {
  public:
   ByVertex(CoarseSpace& space, const Linearization& h) : space_(space), place_(h.size()) {
-    for (const Couplings* set : h.sets()) {
+    for (const SpringHessian* set : h.sets()) {
       for (std::size_t i = 0; i < set->pattern().position_count(); ++i)
         if (const int v = set->pattern().vertex(i); v >= 0)
           place_[set->first() + static_cast<std::size_t>(v)] = positions_ + i;

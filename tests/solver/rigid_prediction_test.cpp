@@ -121,13 +121,13 @@ TEST(RigidPrediction, LeavesOthersAndExplicitStepsAlone) {
   predict_rigid(Integrator::implicit_euler, state, 1, context);
   EXPECT_EQ(context.inertial_prediction[0], plain.inertial_prediction[0]);
   EXPECT_EQ(context.anchor[0], plain.anchor[0]);
-  EXPECT_EQ(context.turned, (std::vector<std::uint8_t>{0, 1, 1, 1, 1}));
+  EXPECT_EQ(context.rigidly_rotated, (std::vector<std::uint8_t>{0, 1, 1, 1, 1}));
   EXPECT_NE(context.inertial_prediction[1], plain.inertial_prediction[1]);
   StepContext explicit_step = step_context(Integrator::symplectic_euler, state, 0.01);
   const StepContext before = explicit_step;
   predict_rigid(Integrator::symplectic_euler, state, 1, explicit_step);
   EXPECT_EQ(explicit_step.inertial_prediction, before.inertial_prediction);
-  EXPECT_TRUE(explicit_step.turned.empty());
+  EXPECT_TRUE(explicit_step.rigidly_rotated.empty());
 }
 
 }  // namespace

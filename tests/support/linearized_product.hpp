@@ -11,11 +11,11 @@ namespace muslin::test {
 /// body(a, b, B) for every coupling of a linearisation: B = s sᵀ + t I between vertices a and b.
 template <class Body>
 void for_each_coupling(const Linearization& h, const Body& body) {
-  constexpr auto lanes = static_cast<std::size_t>(CouplingPattern::lanes);
-  for (const Couplings* set : h.sets()) {
-    const CouplingPattern& pattern = set->pattern();
+  constexpr auto lanes = static_cast<std::size_t>(EliminationOrder::lanes);
+  for (const SpringHessian* set : h.sets()) {
+    const EliminationOrder& pattern = set->pattern();
     for (std::size_t b = 0; b < pattern.block_count(); ++b) {
-      const CouplingPattern::Block& block = pattern.blocks()[b];
+      const EliminationOrder::Block& block = pattern.blocks()[b];
       float sx[lanes], sy[lanes], sz[lanes], t[lanes];
       set->load(b, 1, sx, sy, sz, t);
       for (std::size_t l = 0; l < lanes; ++l) {
@@ -39,13 +39,13 @@ inline std::vector<Vec3> product(Linearization& h, ConstVectors p) {
     const Vec3 f = block * (p[b] - p[a]);
     y[a] -= f, y[b] += f;
   });
-  if (!h.has_rest()) return y;
+  if (!h.has_remainder()) return y;
   std::vector<Float4> from(p.size()), to(p.size(), Float4{0, 0, 0, 0});
   for (std::size_t v = 0; v < p.size(); ++v) {
     from[v] =
         Float4{static_cast<float>(p[v].x()), static_cast<float>(p[v].y()), static_cast<float>(p[v].z()), 0};
   }
-  h.add_rest_product(from.data(), to.data());
+  h.add_remainder_product(from.data(), to.data());
   for (std::size_t v = 0; v < p.size(); ++v) y[v] += Vec3(to[v][0], to[v][1], to[v][2]);
   return y;
 }

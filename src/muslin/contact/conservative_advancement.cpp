@@ -22,10 +22,10 @@ double safe_fraction(PairKind kind, std::span<const Vec3, 4> x, std::span<const 
   fastest = std::sqrt(fastest);
   const double floor = required + distance_rounding(size);
 
-  constexpr int most_steps = 100;
+  constexpr int max_steps = 100;
   double t = 0, enough = 0;
   std::array<Vec3, 4> at;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     for (std::size_t i = 0; i < 4; ++i) at[i] = x[i] + t * u[i];
     const ClosestPoints closest = closest_points(kind, at);
     const double d = closest.distance(), slack = d - floor;

@@ -101,7 +101,7 @@ void ContactCandidates::limit_by_rest(ContactPair& pair) const {
   pair.range = std::min(pair.range, rest_range * found->distance);
 }
 
-void ContactCandidates::leave_free(std::span<const std::array<int, 2>> triangles) {
+void ContactCandidates::ignore_pairs(std::span<const std::array<int, 2>> triangles) {
   free_.clear();
   for (const auto& [first, second] : triangles) {
     for (int i = 0; i < 3; ++i) {

@@ -53,7 +53,7 @@ class ContactCandidates {
 
   /// Excludes pairs between features of triangle first and triangle second, from the next update on; by
   /// default none are excluded.
-  void leave_free(std::span<const std::array<int, 2>> triangles);
+  void ignore_pairs(std::span<const std::array<int, 2>> triangles);
 
   /// Finds the pairs that may come within range while all points move in straight lines from `begin` to `end`
   /// (#P by 3, [m]) at the same pace, each within ± `margin` [m] along every axis. If no displacement exceeds

@@ -20,12 +20,12 @@ constexpr double margin_share = 0.5;
 constexpr double renewed_share = 0.3;
 /// Pushed vertices move at most this much farther than the pushing ones, along slanting normals.
 constexpr double pushed_share = 1.5;
-/// Displacements of more edges than this are limited in pieces, at most `most_pieces`.
+/// Displacements of more edges than this are limited in pieces, at most `max_pieces`.
 constexpr double edges_at_once = 2;
-constexpr int most_pieces = 256;
+constexpr int max_pieces = 256;
 /// Most rounds of limiting a displacement; each updates the candidates of points that left their boxes. Two
 /// or three usually suffice; otherwise the displacement is set to zero.
-constexpr int most_rounds = 32;
+constexpr int max_rounds = 32;
 /// Prescribed vertices move this share of that at once: the search covers all vertices they might push.
 constexpr double pushed_at_once = 0.125;
 /// Assumed edge length in contact distances if no body is deformable.
@@ -82,7 +82,7 @@ void require_fit(const ContactMemory& memory, const ContactModel& model) {
         return pair[0] >= 0 && pair[0] < triangles && pair[1] >= 0 && pair[1] < triangles;
       });
   if (!fits)
-    throw Error(ErrorKind::input, "the checkpoint's contact belongs to other surfaces", "start the run anew");
+    throw Error(ErrorKind::input, "the checkpoint's contact belongs to other surfaces", "restart the run");
 }
 
 ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMemory& memory)
@@ -104,8 +104,8 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
       throw Error(ErrorKind::usage, "a body's frame has a vertex that does not exist", "check the indices");
   }
   require_fit(memory_, *model_);
-  candidates_.leave_free(memory_.tangled);
-  find_again();
+  candidates_.ignore_pairs(memory_.tangled);
+  rebuild();
 }
 
 void ContactGuard::begin(ConstVectors q, std::span<const std::uint8_t> held) {
@@ -133,7 +133,8 @@ void ContactGuard::measure(ConstVectors q) {
   distances_.update(x_);
 }
 
-/// Sets outside_ where `inside` is false of a point and its box; returns the number of such points.
+/// Sets outside_ where `inside` is false of a point and its box; returns the number of such points. Calls it
+/// once for each point, on any thread.
 template <class Inside>
 std::size_t ContactGuard::find_outside(const Inside& inside) {
   outside_.resize(x_.size());
@@ -149,7 +150,7 @@ std::size_t ContactGuard::find_outside(const Inside& inside) {
 
 /// Ensures that all pairs are known for the motion from q to q + d, and for vertices pushed aside by held
 /// vertices, which move about as far as those.
-void ContactGuard::cover(ConstVectors q, ConstVectors d) {
+void ContactGuard::ensure_coverage(ConstVectors q, ConstVectors d) {
   double push = 0;
   for (std::size_t v = 0; v < held_.size(); ++v)
     if (held_[v] != 0) push = std::max(push, d[v].norm());
@@ -181,7 +182,7 @@ void ContactGuard::renew() {
 
 /// Returns true if the limited displacement takes points out of their boxes, which were made for the original
 /// one; their candidates are then updated.
-bool ContactGuard::renew_stopped(ConstVectors d) {
+bool ContactGuard::requery_clamped(ConstVectors d) {
   model_->map->apply(d, to_);
   const std::size_t count = find_outside([&](std::size_t p, const PointBox& box) {
     to_[p] += x_[p];
@@ -226,9 +227,9 @@ void ContactGuard::shorten(Vectors d) const {
 
 void ContactGuard::limit(ConstVectors q, Vectors d) {
   shorten(d);
-  cover(q, d);
+  ensure_coverage(q, d);
   ++counts_.limits;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     {
       const Stopwatch watch(counts_.limit_seconds);
       measure(q);
@@ -236,13 +237,13 @@ void ContactGuard::limit(ConstVectors q, Vectors d) {
       counts_.deflected += report.deflected;
       counts_.shortened += report.shortened;
     }
-    if (!renew_stopped(d)) return;
+    if (!requery_clamped(d)) return;
   }
   std::fill(d.begin(), d.end(), Vec3::Zero());
 }
 
 void ContactGuard::limit(ConstVectors q, Vectors d, std::span<const int> groups) {
-  cover(q, d);
+  ensure_coverage(q, d);
   measure(q);
   std::vector<double> moves;  // by group, the farthest
   for (std::size_t v = 0; v < d.size(); ++v) {
@@ -281,7 +282,7 @@ void ContactGuard::advance(Vectors q, ConstVectors d) {
   for (std::size_t v = 0; v < d.size(); ++v)
     farthest = std::max(farthest, d[v].norm() / (held_[v] != 0 ? longest_push_ : longest_));
   const double needed = std::ceil(farthest);
-  const int pieces = needed < most_pieces ? std::max(1, static_cast<int>(needed)) : most_pieces;
+  const int pieces = needed < max_pieces ? std::max(1, static_cast<int>(needed)) : max_pieces;
   const std::vector<Vec3> from(q.begin(), q.end());
   piece_.resize(q.size());
   for (int k = 1; k <= pieces; ++k) {
@@ -299,7 +300,7 @@ void ContactGuard::advance(Vectors q, ConstVectors d) {
 const Potential& ContactGuard::potential(ConstVectors q, StepGuard::Friction friction) {
   if (memory_.begin.empty()) {
     piece_.assign(q.size(), Vec3::Zero());
-    cover(q, piece_);
+    ensure_coverage(q, piece_);
   }
   const Stopwatch watch(counts_.potential_seconds);
   measure(q);
@@ -322,7 +323,7 @@ void ContactGuard::end(ConstVectors q) {
   memory_.slips = potential_->slips(q);
   measure(q);
   memory_.smallest_gap = distances_.smallest_gap();
-  if (!memory_.tangled.empty()) leave_tangled(q);
+  if (!memory_.tangled.empty()) allow_initial_intersections(q);
   // Ignored pairs are not candidates. Triangles that cross have distance 0.
   const ContactSurface& surface = *model_->surface;
   const auto radius = [&](int t) {
@@ -350,15 +351,15 @@ std::vector<std::array<int, 2>> ContactGuard::crossing(ConstVectors q) {
   return pairs;
 }
 
-void ContactGuard::leave_tangled(ConstVectors q) {
+void ContactGuard::allow_initial_intersections(ConstVectors q) {
   std::vector<std::array<int, 2>> now = crossing(q);
   if (now == memory_.tangled) return;
   memory_.tangled = std::move(now);
-  candidates_.leave_free(memory_.tangled);
-  find_again();
+  candidates_.ignore_pairs(memory_.tangled);
+  rebuild();
 }
 
-void ContactGuard::find_again() {
+void ContactGuard::rebuild() {
   if (memory_.begin.empty()) return;
   candidates_.update(memory_.begin, memory_.end, memory_.margin, edge_);
   distances_.forget();

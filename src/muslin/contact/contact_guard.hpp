@@ -48,7 +48,7 @@ class ContactGuard : public StepGuard {
 
   /// Excludes contact between the features of triangles that cross at q until these part. While some cross,
   /// neighbours may begin to cross; once none does, nothing crosses again.
-  void leave_tangled(ConstVectors q);
+  void allow_initial_intersections(ConstVectors q);
   /// Returns the number of excluded pairs of triangles that still cross.
   std::size_t tangled() const { return memory_.tangled.size(); }
 
@@ -61,14 +61,14 @@ class ContactGuard : public StepGuard {
   std::vector<std::array<int, 2>> crossing(ConstVectors q);
   void find_candidates(ConstVectors begin, ConstVectors end, double margin);
   /// Repeats the last search for candidates.
-  void find_again();
+  void rebuild();
   void forget_renewed();
   template <class Inside>
   std::size_t find_outside(const Inside& inside);
   void renew();
-  bool renew_stopped(ConstVectors d);
+  bool requery_clamped(ConstVectors d);
   void measure(ConstVectors q);
-  void cover(ConstVectors q, ConstVectors d);
+  void ensure_coverage(ConstVectors q, ConstVectors d);
   void shorten(Vectors d) const;
 
   std::shared_ptr<const ContactModel> model_;

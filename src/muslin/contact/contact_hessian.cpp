@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "muslin/core/parallel.hpp"
+#include "muslin/potential/linearization.hpp"
 
 namespace muslin {
 namespace {
@@ -22,8 +23,9 @@ ContactHessian::ContactHessian(const SurfaceMap& map, const std::vector<ContactR
           // Points of one pair may share vertices.
           const auto first = static_cast<std::ptrdiff_t>(out.size());
           const auto add = [&](int vertex, double weight) {
-            const auto same = std::find_if(out.begin() + first, out.end(),
-                                           [&](const StepGuard::Weight& known) { return known.vertex == vertex; });
+            const auto same =
+                std::find_if(out.begin() + first, out.end(),
+                             [&](const StepGuard::Weight& known) { return known.vertex == vertex; });
             if (same != out.end()) {
               same->weight += weight;
             } else {
@@ -74,7 +76,8 @@ void ContactHessian::add_hessian_product(ConstVectors /*q*/, ConstVectors p, Vec
     for (std::size_t r = begin; r < end; ++r) forces[r] = rows_[r].times(relative(r, p));
   });
   for (std::size_t r = 0; r < rows_.size(); ++r)
-    for (const StepGuard::Weight& w : weights(r)) y[static_cast<std::size_t>(w.vertex)] += w.weight * forces[r];
+    for (const StepGuard::Weight& w : weights(r))
+      y[static_cast<std::size_t>(w.vertex)] += w.weight * forces[r];
 }
 
 void ContactHessian::linearize(ConstVectors /*q*/, Linearization& into, std::size_t first) const {

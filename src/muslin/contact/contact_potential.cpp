@@ -9,6 +9,7 @@
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
+#include "muslin/potential/linearization.hpp"
 
 namespace muslin {
 namespace {
@@ -72,7 +73,7 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
 ContactPotential::ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map,
                                    ConstVectors lagged, const ContactPotential& friction)
     : ContactPotential(distances, std::move(map), lagged, friction.friction_) {
-  rubs_ = friction.rubs_;
+  friction_terms_ = friction.friction_terms_;
   carried_ = friction.carried_;
 }
 
@@ -86,34 +87,35 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
   std::vector<Vec3> start_buffer;
   const ConstVectors x_start = points(start, start_buffer);
   struct Made {
-    Rub rub;
+    FrictionTerm sliding;
     Carried carried;
   };
-  const auto made = parallel_collect<Made>(contacts_.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const MergedContact& contact = contacts_[i];
-      if (!(contact.slope < 0) || contact.key == 0) continue;
-      const double coefficient =
-          surface_->friction(contact.points[0], contact.points[static_cast<std::size_t>(contact.first_size)],
-                             friction.coefficient);
-      if (!(coefficient > 0)) continue;
-      Made& one = out.emplace_back();
-      Rub& rub = one.rub;
-      rub.contact = contact;
-      rub.limit = -coefficient * contact.slope;
-      rub.weights = contact.weights;
-      carry(rub, lagged_, lagged, one.carried);
-      rub.begin = combined(contact, rub.weights, x_start);
-      for (const SurfaceMap::Entry& e : one.carried.span())
-        rub.begin += e.weight * start[static_cast<std::size_t>(e.vertex)];
-      rub.begin -= tangential(known_slip(*surface_, contact.key, slips), contact.normal);
-    }
-  });
-  rubs_.reserve(made.size());
+  const auto made =
+      parallel_collect<Made>(contacts_.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const MergedContact& contact = contacts_[i];
+          if (!(contact.slope < 0) || contact.key == 0) continue;
+          const double coefficient = surface_->friction(
+              contact.points[0], contact.points[static_cast<std::size_t>(contact.first_size)],
+              friction.coefficient);
+          if (!(coefficient > 0)) continue;
+          Made& one = out.emplace_back();
+          FrictionTerm& sliding = one.sliding;
+          sliding.contact = contact;
+          sliding.limit = -coefficient * contact.slope;
+          sliding.weights = contact.weights;
+          carry(sliding, lagged_, lagged, one.carried);
+          sliding.begin = combined(contact, sliding.weights, x_start);
+          for (const SurfaceMap::Entry& e : one.carried.span())
+            sliding.begin += e.weight * start[static_cast<std::size_t>(e.vertex)];
+          sliding.begin -= tangential(known_slip(*surface_, contact.key, slips), contact.normal);
+        }
+      });
+  friction_terms_.reserve(made.size());
   for (const Made& one : made) {
-    Rub& rub = rubs_.emplace_back(one.rub);
+    FrictionTerm& sliding = friction_terms_.emplace_back(one.sliding);
     if (one.carried.count == 0) continue;
-    rub.carried = static_cast<int>(carried_.size());
+    sliding.carried = static_cast<int>(carried_.size());
     carried_.push_back(one.carried);
   }
 }
@@ -134,8 +136,8 @@ std::span<const MergedContact> ContactPotential::contacts(ConstVectors x,
 
 /// Where a feature belongs to a body with a frame: the point of its surface that touches, by the frame's
 /// vertices; its points no longer count.
-void ContactPotential::carry(Rub& rub, ConstVectors x, ConstVectors q, Carried& carried) const {
-  const MergedContact& at = rub.contact;
+void ContactPotential::carry(FrictionTerm& sliding, ConstVectors x, ConstVectors q, Carried& carried) const {
+  const MergedContact& at = sliding.contact;
   const int count = point_count(at);
   for (const bool first : {true, false}) {
     const int from = first ? 0 : at.first_size, to = first ? at.first_size : count;
@@ -159,19 +161,19 @@ void ContactPotential::carry(Rub& rub, ConstVectors x, ConstVectors q, Carried& 
       const double weight = k == 0 ? 1 - share.sum() : share[static_cast<Eigen::Index>(k) - 1];
       carried.entries[carried.count++] = {body.frame[k], sign * weight};
     }
-    for (int i = from; i < to; ++i) rub.weights[static_cast<std::size_t>(i)] = 0;
+    for (int i = from; i < to; ++i) sliding.weights[static_cast<std::size_t>(i)] = 0;
   }
 }
 
-std::span<const SurfaceMap::Entry> ContactPotential::carried(const Rub& rub) const {
-  if (rub.carried < 0) return {};
-  return carried_[static_cast<std::size_t>(rub.carried)].span();
+std::span<const SurfaceMap::Entry> ContactPotential::carried(const FrictionTerm& sliding) const {
+  if (sliding.carried < 0) return {};
+  return carried_[static_cast<std::size_t>(sliding.carried)].span();
 }
 
-Vec3 ContactPotential::slip(const Rub& rub, ConstVectors x, ConstVectors q) const {
-  Vec3 sum = combined(rub.contact, rub.weights, x);
-  for (const SurfaceMap::Entry& e : carried(rub)) sum += e.weight * q[static_cast<std::size_t>(e.vertex)];
-  return tangential(sum - rub.begin, rub.contact.normal);
+Vec3 ContactPotential::slip(const FrictionTerm& sliding, ConstVectors x, ConstVectors q) const {
+  Vec3 sum = combined(sliding.contact, sliding.weights, x);
+  for (const SurfaceMap::Entry& e : carried(sliding)) sum += e.weight * q[static_cast<std::size_t>(e.vertex)];
+  return tangential(sum - sliding.begin, sliding.contact.normal);
 }
 
 ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
@@ -187,10 +189,11 @@ ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
     }
     return part;
   });
-  sum.friction = parallel_sum(rubs_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+  sum.friction = parallel_sum(friction_terms_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double part = 0;
     for (std::size_t i = begin; i < end; ++i)
-      part += rubs_[i].limit * friction_law(slip(rubs_[i], x, q).norm(), friction_.stick_length).value;
+      part += friction_terms_[i].limit *
+              friction_law(slip(friction_terms_[i], x, q).norm(), friction_.stick_length).value;
     return part;
   });
   return sum;
@@ -214,11 +217,11 @@ void ContactPotential::add_gradient(ConstVectors q, Vectors g) const {
   };
   for (const MergedContact& contact : contacts(x, merged))
     push(contact, contact.weights, contact.slope * contact.normal);
-  for (const Rub& rub : rubs_) {
-    const Vec3 e = slip(rub, x, q);
-    const Vec3 force = rub.limit * friction_law(e.norm(), friction_.stick_length).curvature * e;
-    push(rub.contact, rub.weights, force);
-    for (const SurfaceMap::Entry& entry : carried(rub))
+  for (const FrictionTerm& sliding : friction_terms_) {
+    const Vec3 e = slip(sliding, x, q);
+    const Vec3 force = sliding.limit * friction_law(e.norm(), friction_.stick_length).curvature * e;
+    push(sliding.contact, sliding.weights, force);
+    for (const SurfaceMap::Entry& entry : carried(sliding))
       g[static_cast<std::size_t>(entry.vertex)] += entry.weight * force;
   }
   if (!direct) map_->add_transpose(sums, g);
@@ -249,20 +252,23 @@ ContactHessian ContactPotential::hessian(ConstVectors q) const {
   std::vector<MergedContact> merged;
   const ConstVectors x = points(q, buffer);
   const std::span<const MergedContact> all = contacts(x, merged);
-  auto rows = parallel_collect<ContactRow>(all.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
-    for (const MergedContact& contact : all.subspan(begin, end - begin)) {
-      if (contact.curvature > 0)
-        out.push_back({contact.points, contact.weights, contact.normal, contact.curvature, 0, {}});
-      add_tilt(contact, x, out);
-    }
-  });
+  auto rows =
+      parallel_collect<ContactRow>(all.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+        for (const MergedContact& contact : all.subspan(begin, end - begin)) {
+          if (contact.curvature > 0)
+            out.push_back({contact.points, contact.weights, contact.normal, contact.curvature, 0, {}});
+          add_tilt(contact, x, out);
+        }
+      });
   const std::size_t normal_rows = rows.size();
-  rows.resize(normal_rows + rubs_.size());
-  parallel_for(rubs_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  rows.resize(normal_rows + friction_terms_.size());
+  parallel_for(friction_terms_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Rub& rub = rubs_[i];
-      const double secant = rub.limit * friction_law(slip(rub, x, q).norm(), friction_.stick_length).curvature;
-      rows[normal_rows + i] = {rub.contact.points, rub.weights, rub.contact.normal, 0, secant, carried(rub)};
+      const FrictionTerm& sliding = friction_terms_[i];
+      const double secant =
+          sliding.limit * friction_law(slip(sliding, x, q).norm(), friction_.stick_length).curvature;
+      rows[normal_rows + i] = {sliding.contact.points, sliding.weights, sliding.contact.normal, 0, secant,
+                               carried(sliding)};
     }
   });
   return {*map_, rows};
@@ -286,11 +292,11 @@ std::vector<PairSlip> ContactPotential::slips(ConstVectors q) const {
   std::vector<Vec3> buffer;
   const ConstVectors x = points(q, buffer);
   std::vector<PairSlip> result;
-  for (const Rub& rub : rubs_) {
-    Vec3 e = slip(rub, x, q);
+  for (const FrictionTerm& sliding : friction_terms_) {
+    Vec3 e = slip(sliding, x, q);
     const double length = e.norm();
     if (length > friction_.stick_length) e *= friction_.stick_length / length;
-    result.push_back({rub.contact.key, e});
+    result.push_back({sliding.contact.key, e});
   }
   std::sort(result.begin(), result.end(), [](const PairSlip& a, const PairSlip& b) { return a.key < b.key; });
   return result;

@@ -79,7 +79,7 @@ class ContactPotential : public Potential {
 
  private:
   /// Friction of one contact.
-  struct Rub {
+  struct FrictionTerm {
     MergedContact contact;            ///< where the potential was made
     double limit = 0;                 ///< μ λ [N]
     std::array<double, 4> weights{};  ///< of points that are not carried
@@ -97,9 +97,9 @@ class ContactPotential : public Potential {
   ConstVectors points(ConstVectors q, std::vector<Vec3>& buffer) const;
   /// Returns the contacts at x: `buffer`, filled, unless x is the lagged position.
   std::span<const MergedContact> contacts(ConstVectors x, std::vector<MergedContact>& buffer) const;
-  void carry(Rub& rub, ConstVectors x, ConstVectors q, Carried& carried) const;
-  std::span<const SurfaceMap::Entry> carried(const Rub& rub) const;
-  Vec3 slip(const Rub& rub, ConstVectors x, ConstVectors q) const;
+  void carry(FrictionTerm& sliding, ConstVectors x, ConstVectors q, Carried& carried) const;
+  std::span<const SurfaceMap::Entry> carried(const FrictionTerm& sliding) const;
+  Vec3 slip(const FrictionTerm& sliding, ConstVectors x, ConstVectors q) const;
   void add_tilt(const MergedContact& contact, ConstVectors x, std::vector<ContactRow>& rows) const;
 
   ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
@@ -112,7 +112,7 @@ class ContactPotential : public Potential {
   std::vector<Vec3> lagged_;    ///< points there
   std::vector<ContactTerm> terms_;
   std::vector<MergedContact> contacts_;  ///< at lagged_
-  std::vector<Rub> rubs_;
+  std::vector<FrictionTerm> friction_terms_;
   std::vector<Carried> carried_;
 };
 

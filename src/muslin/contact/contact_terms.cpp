@@ -94,7 +94,7 @@ class Patch {
     triangles_.resize(pairs.size());
     ranges_.resize(pairs.size());
     if (is_large(pairs.size()) && places_.empty()) places_.assign(surface_.triangles().size(), -1);
-    parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(pairs.size(), patch_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         triangles_[k] = pair(k).second;
         ranges_[k] = range_of(surface_, pair(k), distances_.points());
@@ -109,7 +109,7 @@ class Patch {
   }
 
   std::size_t size() const { return triangles_.size(); }
-  /// Large patches find triangles by a table, and are worth several threads.
+  /// Large patches find triangles by a table, and are worth several threads each.
   static bool is_large(std::size_t size) { return size > 256; }
 
   /// Appends the terms of triangle k, and those of its edges and corners that no triangle before it has.
@@ -119,7 +119,8 @@ class Patch {
       out.push_back({ContactTerm::Kind::vertex_triangle, own.points, -1, own.key(), own.thickness, ranges_[k],
                      surface_.stiffness(own.points[0], own.points[3], dt)});
     }
-    const Vec3i &corners = surface_.triangles()[at(triangles_[k])], &edges = surface_.triangle_edges()[at(triangles_[k])];
+    const Vec3i &corners = surface_.triangles()[at(triangles_[k])],
+                &edges = surface_.triangle_edges()[at(triangles_[k])];
     for (int i = 0; i < 3; ++i) {
       if (!is_again(edges, i) && edges[i] >= 0) add_edge(k, edges[i], dt, out);
       if (!is_again(corners, i)) add_corner(k, corners[i], dt, out);
@@ -146,8 +147,9 @@ class Patch {
       return place < 0 ? size() : at(place);
     }
     const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), triangle);
-    return found != triangles_.end() && *found == triangle ? static_cast<std::size_t>(found - triangles_.begin())
-                                                           : size();
+    return found != triangles_.end() && *found == triangle
+               ? static_cast<std::size_t>(found - triangles_.begin())
+               : size();
   }
 
   /// True if triangle k is the first of the patch among `triangles`, of which it is one.
@@ -174,7 +176,12 @@ class Patch {
     if (!is_first(k, triangles)) return;
     const Feature e = feature(triangles);
     const ContactSurface::Edge& ends = surface_.edges()[at(edge)];
-    add({ContactTerm::Kind::vertex_edge, {vertex_, ends[0], ends[1], -1}, -1, 0, e.thickness, e.range,
+    add({ContactTerm::Kind::vertex_edge,
+         {vertex_, ends[0], ends[1], -1},
+         -1,
+         0,
+         e.thickness,
+         e.range,
          (1 - e.triangles) * surface_.stiffness(vertex_, ends[0], dt)},
         out);
   }
@@ -187,7 +194,12 @@ class Patch {
       // The search finds the centre of a sphere and corners only with the corners' triangles.
       const std::uint64_t key =
           ContactPair::key_of(PairKind::vertex_triangle, corner, surface_.round_triangle(vertex_));
-      add({ContactTerm::Kind::vertex_vertex, {vertex_, corner, -1, -1}, -1, key, pair(0).thickness, pair(0).range,
+      add({ContactTerm::Kind::vertex_vertex,
+           {vertex_, corner, -1, -1},
+           -1,
+           key,
+           pair(0).thickness,
+           pair(0).range,
            stiffness},
           out);
     }
@@ -206,7 +218,12 @@ class Patch {
         if (meets && !is_first(place, surface_.triangles_at_edge(edges[i]))) ++coefficient;
       }
     }
-    add({ContactTerm::Kind::vertex_vertex, {vertex_, corner, -1, -1}, -1, 0, c.thickness, c.range,
+    add({ContactTerm::Kind::vertex_vertex,
+         {vertex_, corner, -1, -1},
+         -1,
+         0,
+         c.thickness,
+         c.range,
          coefficient * stiffness},
         out);
   }
@@ -241,8 +258,8 @@ void add_term(const PairDistances& distances, std::size_t i, double dt, std::vec
   const double stiffness =
       surface.stiffness(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)], dt);
   if (pair.kind == PairKind::point_plane) {
-    out.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness, pair.range,
-                   stiffness});
+    out.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness,
+                   pair.range, stiffness});
     return;
   }
   const double factor = edge_factor(surface, pair, distances[i], distances.points());
@@ -318,8 +335,8 @@ struct HashOfPoints {
   }
 };
 
-/// The places of contacts in a list to which they are added one by one. Short lists are searched one by one, long
-/// ones by a table: most vertices are near to a few features, a ball to thousands.
+/// The places of contacts in a list to which they are added one by one. Short lists are searched one by one,
+/// long ones by a table: most vertices are near to a few features, a ball to thousands.
 class Places {
  public:
   void clear() {
@@ -336,7 +353,8 @@ class Places {
   void add(const TouchingPoints& key) {
     keys_.push_back(key);
     if (keys_.size() <= few) return;
-    for (std::size_t i = table_.empty() ? 0 : keys_.size() - 1; i < keys_.size(); ++i) table_.emplace(keys_[i], i);
+    for (std::size_t i = table_.empty() ? 0 : keys_.size() - 1; i < keys_.size(); ++i)
+      table_.emplace(keys_[i], i);
   }
 
  private:
@@ -390,7 +408,8 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt
   const std::vector<int> found =
       parallel_collect<int>(pairs.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
         for (std::size_t i = begin; i < end; ++i) {
-          if (pairs[i].kind == PairKind::vertex_triangle && is_near_pair(i)) out.push_back(static_cast<int>(i));
+          if (pairs[i].kind == PairKind::vertex_triangle && is_near_pair(i))
+            out.push_back(static_cast<int>(i));
         }
       });
   const std::vector<int> of_vertices = by_features(pairs, found, distances.points().size());
@@ -411,29 +430,32 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt
   const auto append = [&](const std::vector<ContactTerm>& more) {
     terms.insert(terms.end(), more.begin(), more.end());
   };
-  append(parallel_collect<ContactTerm>(patches, patch_grain, [&](std::size_t begin, std::size_t end, auto& out) {
-    Patch patch(distances);
-    for (std::size_t p = begin; p < end; ++p) {
-      if (Patch::is_large(pairs_of(p).size())) continue;
-      patch.assign(pairs_of(p));
-      for (std::size_t k = 0; k < patch.size(); ++k) patch.add_terms(k, dt, out);
-    }
-  }));
+  append(
+      parallel_collect<ContactTerm>(patches, patch_grain, [&](std::size_t begin, std::size_t end, auto& out) {
+        Patch patch(distances);
+        for (std::size_t p = begin; p < end; ++p) {
+          if (Patch::is_large(pairs_of(p).size())) continue;
+          patch.assign(pairs_of(p));
+          for (std::size_t k = 0; k < patch.size(); ++k) patch.add_terms(k, dt, out);
+        }
+      }));
   Patch large(distances);
   for (std::size_t p = 0; p < patches; ++p) {
     if (!Patch::is_large(pairs_of(p).size())) continue;
     large.assign(pairs_of(p));
-    append(parallel_collect<ContactTerm>(large.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
-      for (std::size_t k = begin; k < end; ++k) large.add_terms(k, dt, out);
-    }));
+    append(parallel_collect<ContactTerm>(large.size(), patch_grain,
+                                         [&](std::size_t begin, std::size_t end, auto& out) {
+                                           for (std::size_t k = begin; k < end; ++k)
+                                             large.add_terms(k, dt, out);
+                                         }));
   }
   return terms;
 }
 
 std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::span<const ContactTerm> terms,
                                            ConstVectors x) {
-  const std::vector<MergedContact> contacts =
-      parallel_collect<MergedContact>(terms.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+  const std::vector<MergedContact> contacts = parallel_collect<MergedContact>(
+      terms.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const PairGeometry at = term_geometry(surface, terms[i], x);
           const double gap = at.distance - terms[i].thickness;
@@ -448,7 +470,8 @@ std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::s
           out.push_back(contact);
         }
       });
-  // Terms of one vertex follow one another.
+  // Terms of one vertex against one body follow one another, and those against two have no closest points in
+  // common.
   std::vector<MergedContact> merged;
   std::size_t first = 0;
   Places places;

@@ -45,8 +45,8 @@ struct ContactTerm {
 PairGeometry term_geometry(const ContactSurface& surface, const ContactTerm& term, ConstVectors x);
 
 /// Returns all terms that are or may come into range near the points of `distances`: pairs whose gap is less
-/// than PairDistances::ranges_known ranges; rigid bodies are stopped within `dt` [s]. Terms of one vertex are
-/// consecutive. Pairs without a gap are left out.
+/// than PairDistances::ranges_known ranges; rigid bodies are stopped within `dt` [s]. Terms of one vertex
+/// against one body are consecutive. Pairs without a gap are left out.
 std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt);
 
 /// The merged terms of one vertex with the same closest points.

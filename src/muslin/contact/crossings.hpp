@@ -33,8 +33,8 @@ struct Crossing {
 /// Errors: usage, if a position is not finite.
 std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, std::size_t limit = 1000000);
 
-/// Returns the first crossing of each pair of faces. A polygon of the user's mesh is several triangles, so that
-/// two polygons may cross in several pairs of these.
+/// Returns the first crossing of each pair of faces. A polygon of the user's mesh is several triangles, so
+/// that two polygons may cross in several pairs of these.
 std::vector<Crossing> one_of_each_pair(const ContactModel& model, std::span<const Crossing> found);
 
 /// Returns one line, such as: face 12 of "cloth" crosses face 3 of "table" near (0.1, 0.2, 0.3) m.

@@ -14,19 +14,19 @@ namespace {
 constexpr std::size_t grain = 2048;
 
 /// Displacement of a point since the pairs were found [m]; padded, so that it is one load.
-using Way = std::array<float, 4>;
+using Displacement = std::array<float, 4>;
 
-float squared_difference(const Way& a, const Way& b) {
+float squared_difference(const Displacement& a, const Displacement& b) {
   const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
   return x * x + y * y + z * z;
 }
 
 /// Returns a bound of how much closer the features of a pair can have come [m].
-float approach(const ContactPair& pair, const std::vector<Way>& ways) {
-  const Way &a = ways[static_cast<std::size_t>(pair.points[0])],
-            &b = ways[static_cast<std::size_t>(pair.points[1])],
-            &c = ways[static_cast<std::size_t>(pair.points[2])],
-            &d = ways[static_cast<std::size_t>(pair.points[3])];
+float approach(const ContactPair& pair, const std::vector<Displacement>& moved) {
+  const Displacement &a = moved[static_cast<std::size_t>(pair.points[0])],
+                     &b = moved[static_cast<std::size_t>(pair.points[1])],
+                     &c = moved[static_cast<std::size_t>(pair.points[2])],
+                     &d = moved[static_cast<std::size_t>(pair.points[3])];
   float most = std::max(squared_difference(a, c), squared_difference(a, d));
   most = pair.kind == PairKind::vertex_triangle
              ? std::max(most, squared_difference(a, b))
@@ -43,11 +43,11 @@ void PairDistances::update(ConstVectors x) {
     throw Error(ErrorKind::usage, "distances of pairs need one position for each point", "give #P positions");
   if (std::equal(x.begin(), x.end(), x_.begin(), x_.end())) return;
   x_.assign(x.begin(), x.end());
-  std::vector<Way> ways(x.size());
+  std::vector<Displacement> moved(x.size());
   parallel_for(x.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const Vec3 way = x[p] - from[p];
-      ways[p] = {static_cast<float>(way.x()), static_cast<float>(way.y()), static_cast<float>(way.z()), 0};
+      moved[p] = {static_cast<float>(way.x()), static_cast<float>(way.y()), static_cast<float>(way.z()), 0};
     }
   });
   const std::span<const ContactPair> pairs = candidates_->pairs();
@@ -59,7 +59,7 @@ void PairDistances::update(ConstVectors x) {
     for (std::size_t i = begin; i < end; ++i) {
       known_[i] = 0;
       geometry_[i].distance =
-          pairs[i].kind == PairKind::point_plane ? 0 : distances[i] - approach(pairs[i], ways);
+          pairs[i].kind == PairKind::point_plane ? 0 : distances[i] - approach(pairs[i], moved);
       if (geometry_[i].distance < pairs[i].thickness + reach) find(i);
     }
   });

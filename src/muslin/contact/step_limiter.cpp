@@ -173,17 +173,17 @@ struct StepLimiter::Work {
     if (approach_a + approach_b <= slack) return;
     // Each side may use the slack in proportion to its approach; a receding side leaves all to the other, and
     // prescribed vertices have priority.
-    double most_a = approach_a, most_b = approach_b;
+    double max_a = approach_a, max_b = approach_b;
     if (!a_yields || (b_yields && approach_a <= 0)) {
-      most_b = slack - approach_a;
+      max_b = slack - approach_a;
     } else if (!b_yields || approach_b <= 0) {
-      most_a = slack - approach_b;
+      max_a = slack - approach_b;
     } else {
-      most_a = slack * approach_a / (approach_a + approach_b);
-      most_b = slack - most_a;
+      max_a = slack * approach_a / (approach_a + approach_b);
+      max_b = slack - max_a;
     }
-    if (a_yields && most_a < approach_a) restrict(pair, at, 0, size_a, -at.normal, most_a, out);
-    if (b_yields && most_b < approach_b) restrict(pair, at, size_a, count, at.normal, most_b, out);
+    if (a_yields && max_a < approach_a) restrict(pair, at, 0, size_a, -at.normal, max_a, out);
+    if (b_yields && max_b < approach_b) restrict(pair, at, size_a, count, at.normal, max_b, out);
   }
 
   /// Checks the pairs of points whose step has changed; returns whether any comes too close.
@@ -301,14 +301,16 @@ struct StepLimiter::Work {
     // Shortening one of several vertices may move a point out of its box again: repeat until none is out.
     for (std::size_t round = 0;; ++round) {
       map.apply(dq, u);
-      const auto outside =
-          parallel_collect<std::pair<int, double>>(map.point_count(), grain, [&](auto begin, auto end, auto& out) {
+      const auto outside = parallel_collect<std::pair<int, double>>(
+          map.point_count(), grain, [&](auto begin, auto end, auto& out) {
             for (std::size_t p = begin; p < end; ++p)
-              if (const double factor = factor_within_box(p); factor < 1) out.emplace_back(static_cast<int>(p), factor);
+              if (const double factor = factor_within_box(p); factor < 1)
+                out.emplace_back(static_cast<int>(p), factor);
           });
       if (outside.empty()) return count;
       std::fill(by.begin(), by.end(), 1.0);
-      for (const auto& [point, factor] : outside) lower(by, point, round < last_rounds ? factor * (1 - 1e-9) : 0);
+      for (const auto& [point, factor] : outside)
+        lower(by, point, round < last_rounds ? factor * (1 - 1e-9) : 0);
       join_groups(by);
       count = std::max(count, shorten(by, dq));
     }

@@ -1,10 +1,10 @@
 #include "muslin/energy/hinge_bending.hpp"
 
-#include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include "muslin/core/arc_tangent.hpp"
+#include "muslin/core/error.hpp"
 #include "muslin/core/vector_code.hpp"
 
 namespace muslin {
@@ -239,7 +239,7 @@ double lowest_bias(double warp, double weft) {
 HingeBending::HingeBending(const Shell& shell, const BendingModuli& moduli,
                            std::shared_ptr<const SymmetricPattern> block_pattern)
     : ShellEnergy(std::move(block_pattern)), slabs_(vertices_of(shell), shell.vertex_count()) {
-  assert(moduli.warp >= 0 && moduli.weft >= 0);
+  require(moduli.warp >= 0 && moduli.weft >= 0, "a bending modulus is negative", "give 0 or more");
   stiffness_ = slabs_.by_entry<double>([&](std::size_t e) {
     const Hinge& hinge = shell.hinges[e];
     return std::max(0.0, rigidity(moduli, hinge.warp_share)) * hinge.length * hinge.length / hinge.area;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "muslin/core/error.hpp"
 #include "muslin/core/vector_code.hpp"
 
 namespace muslin {
@@ -14,7 +15,7 @@ constexpr int lanes = element_lanes;
 
 /// Share of the masses that buckling triangles may use, and the ratio of stiffness to mass above which they
 /// use none, because float would round away the rest of the masses.
-constexpr double held_share = 0.9, most_stiff = 3e4;
+constexpr double held_share = 0.9, max_stiff = 3e4;
 
 using Rest = TriangleRest;
 using Strained = StrainedTriangles;
@@ -152,7 +153,10 @@ MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
     : ShellEnergy(std::move(block_pattern)),
       slabs_(corners_of(shell), shell.vertex_count()),
       rests_(slabs_, shell) {
-  assert(moduli.warp >= 0 && moduli.weft >= 0 && moduli.shear >= 0 && std::abs(moduli.poisson) < 1);
+  require(moduli.warp >= 0 && moduli.weft >= 0 && moduli.shear >= 0, "a membrane modulus is negative",
+          "give 0 or more");
+  require(std::abs(moduli.poisson) < 1, "the Poisson ratio of a membrane is not between -1 and 1",
+          "give 0 to 0.5");
   const double plane_stress = 1 / (1 - moduli.poisson * moduli.poisson);
   constants_.c11 = moduli.warp * plane_stress;
   constants_.c22 = moduli.weft * plane_stress;
@@ -242,7 +246,7 @@ void MembraneEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double
       for (std::size_t c = 0; c < 3; ++c)
         least = std::min(least, mass_shares_[entry][c] *
                                     masses[static_cast<std::size_t>(slabs_.vertices()[entry][c])]);
-      held[l] = scale * stiffness_[entry] < most_stiff * least ? held_share * least : 0;
+      held[l] = scale * stiffness_[entry] < max_stiff * least ? held_share * least : 0;
     }
     slabs_.gather(first, count, x, corners);
     block_factors(constants_, kind, rests_.at(first), scale, held, corners, factors);

@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "muslin/potential/linearization.hpp"
+
 namespace muslin {
 namespace {
 
@@ -69,6 +71,15 @@ class Dashpots : public Potential {
 };
 
 }  // namespace
+
+void ShellEnergy::linearize(ConstVectors x, Linearization& into, std::size_t first) const {
+  if (pattern_) {
+    add_stiffness_matrix(Stiffness::bounded, x, into.scale(), into.masses().subspan(first, x.size()),
+                         into.matrix(pattern_, first));
+  } else {
+    into.add_general(projected_, first, x);
+  }
+}
 
 std::shared_ptr<const SymmetricPattern> block_pattern(const Shell& shell) {
   std::vector<std::pair<int, int>> pairs;

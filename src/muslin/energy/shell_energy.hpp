@@ -47,14 +47,7 @@ class ShellEnergy : public Potential {
   /// Returns the shell's pattern, if given; without it the inner solver computes products from x.
   const std::shared_ptr<const SymmetricPattern>& pattern() const { return pattern_; }
 
-  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
-    if (pattern_) {
-      add_stiffness_matrix(Stiffness::bounded, x, into.scale(), into.masses().subspan(first, x.size()),
-                           into.matrix(pattern_, first));
-    } else {
-      into.add_general(projected_, first, x);
-    }
-  }
+  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override;
 
  private:
   /// The same energy with the projected Hessian.

@@ -75,7 +75,7 @@ class Dashpots : public Potential {
   /// The springs' couplings grow along their own direction. It differs from that of the prediction by as
   /// much as they turn within the step; Newton's method and iterative refinement compensate for it.
   void linearize(ConstVectors, Linearization& into, std::size_t first) const override {
-    add_dashpot_couplings(springs_->block_springs(into.scale() * factor_), predicted_, first, into);
+    add_dashpot_hessian(springs_->block_springs(into.scale() * factor_), predicted_, first, into);
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/potential/linearization.hpp"
 
@@ -52,7 +53,7 @@ JoinedRuns join(const Springs& springs) {
 SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::array<double, 3>& moduli,
                            std::vector<float> weights)
     : weights_(std::move(weights)), count_(springs.count) {
-  assert(width > 0);
+  require(width > 0, "the width of a voxel is not positive", "give metres");
   assert(weights_.empty() || weights_.size() == static_cast<std::size_t>(count_));
   for (const SpringDirection& direction : springs.directions) {
     types_.push_back({width * direction.offset.cast<double>().norm(),
@@ -75,7 +76,8 @@ SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::arra
   }
 
   std::vector<std::int64_t> order;
-  pattern_ = std::make_shared<const CouplingPattern>(runs, vertex_count, weights_.empty() ? nullptr : &order);
+  pattern_ =
+      std::make_shared<const EliminationOrder>(runs, vertex_count, weights_.empty() ? nullptr : &order);
   if (weights_.empty()) return;
   // Couplings are counted through the runs, as the order in which they are given.
   std::vector<std::int64_t> spring_of;
@@ -137,7 +139,7 @@ void SpringEnergy::add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) c
 }
 
 void SpringEnergy::linearize(ConstVectors x, Linearization& into, std::size_t first) const {
-  set_spring_couplings(block_springs(into.scale()), x, first, into);
+  set_spring_hessian(block_springs(into.scale()), x, first, into);
 }
 
 double SpringEnergy::max_stretch(ConstVectors x) const {

@@ -16,11 +16,11 @@
 #include <memory>
 #include <vector>
 
-#include "muslin/energy/spring_couplings.hpp"
+#include "muslin/energy/spring_hessian_kernels.hpp"
 #include "muslin/energy/spring_kernels.hpp"
 #include "muslin/energy/spring_slabs.hpp"
 #include "muslin/lattice/springs.hpp"
-#include "muslin/potential/coupling_pattern.hpp"
+#include "muslin/potential/elimination_order.hpp"
 #include "muslin/potential/potential.hpp"
 
 namespace muslin {
@@ -60,7 +60,7 @@ class SpringEnergy : public Potential {
   std::int64_t count() const { return count_; }
 
   /// Returns the springs in the elimination order of the inner solver; kinds are directions.
-  const std::shared_ptr<const CouplingPattern>& pattern() const { return pattern_; }
+  const std::shared_ptr<const EliminationOrder>& pattern() const { return pattern_; }
   /// Returns all springs of the pattern with `factor` k.
   BlockSprings block_springs(double factor) const;
 
@@ -72,7 +72,7 @@ class SpringEnergy : public Potential {
   std::vector<Type> types_;  // by direction
   std::vector<float> weights_;
   std::int64_t count_ = 0;
-  std::shared_ptr<const CouplingPattern> pattern_;
+  std::shared_ptr<const EliminationOrder> pattern_;
   std::vector<float> slot_weights_;   // 0 where joining runs left a gap
   std::vector<float> block_weights_;  // in the order of the pattern, 16 each block
   SpringSlabs slabs_;

@@ -10,8 +10,8 @@
 namespace muslin {
 namespace {
 
-constexpr std::array<float, most_springs> ones = [] {
-  std::array<float, most_springs> a{};
+constexpr std::array<float, max_springs> ones = [] {
+  std::array<float, max_springs> a{};
   a.fill(1);
   return a;
 }();
@@ -161,7 +161,7 @@ MUSLIN_VECTOR_CODE void add_chain(const double* __restrict f, int n, int apart, 
 }
 
 struct Buffered {
-  alignas(64) double x[most_springs], y[most_springs], z[most_springs];
+  alignas(64) double x[max_springs], y[max_springs], z[max_springs];
   Columns columns() { return {x, y, z}; }
 };
 

@@ -25,7 +25,7 @@ struct SpringType {
 inline constexpr double shortest_spring = 1e-12;
 
 /// Forces are computed for so many springs at most.
-inline constexpr int most_springs = 1024;
+inline constexpr int max_springs = 1024;
 
 /// Return the distance between columns of n entries [entries], and this thread's memory for columns, valid
 /// until its next call.

@@ -1,9 +1,9 @@
 #include "muslin/energy/stretch_limit.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "muslin/core/error.hpp"
 #include "muslin/core/vector_code.hpp"
 
 namespace muslin {
@@ -194,7 +194,7 @@ StretchBarrier::StretchBarrier(double limit)
       width_(limit_ - onset_),
       stiff_(onset_ + end_of_barrier * width_),
       there_(barrier(end_of_barrier)) {
-  assert(limit > 1);
+  require(limit > 1, "a stretch limit is not above 1", "give the largest length over the rest length");
 }
 
 StretchBarrier::Law StretchBarrier::barrier(double u) const {
@@ -221,7 +221,7 @@ StretchLimitEnergy::StretchLimitEnergy(const Shell& shell, double limit, double 
       stiffness_(stiffness),
       slabs_(corners_of(shell), shell.vertex_count()),
       rests_(slabs_, shell) {
-  assert(stiffness >= 0);
+  require(stiffness >= 0, "the stiffness of a stretch limit is negative", "give 0 or more");
   if (pattern()) slots_ = slabs_.slots(*pattern());
 }
 

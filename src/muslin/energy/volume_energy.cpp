@@ -1,7 +1,6 @@
 #include "muslin/energy/volume_energy.hpp"
 
-#include <cassert>
-
+#include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
@@ -68,7 +67,7 @@ struct Volume {
 
 VolumeEnergy::VolumeEnergy(const Lattice& lattice, double volume_modulus)
     : rest_volume_(lattice.width * lattice.width * lattice.width) {
-  assert(volume_modulus >= 0);
+  require(volume_modulus >= 0, "a volume modulus is negative", "give 0 or more");
   for (std::size_t voxel = 0; voxel < lattice.voxel_count(); ++voxel) {
     const Vec3i& p = lattice.voxels[voxel];
     const int colour = (p.x() & 1) | (p.y() & 1) << 1 | (p.z() & 1) << 2;

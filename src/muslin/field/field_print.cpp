@@ -16,7 +16,7 @@
 namespace muslin {
 namespace {
 
-constexpr double most_samples = 1e7;
+constexpr double max_samples = 1e7;
 constexpr int widest_margin = 1000;
 
 // A bounding box this close to a sample, in voxel widths, is taken to pass through it.
@@ -127,7 +127,7 @@ std::string print_field(const Mesh& mesh, const FieldPrintSettings& settings) {
     return sample_range(bounds.min()[axis], bounds.max()[axis], width, settings.margin[axis]);
   };
   const Range columns = range(across), rows = range(upward);
-  if (columns.count * rows.count > most_samples)
+  if (columns.count * rows.count > max_samples)
     throw Error(ErrorKind::usage,
                 fmt::format("a slice of this mesh has {:.0f} × {:.0f} samples at the voxel width {} m",
                             columns.count, rows.count, width),

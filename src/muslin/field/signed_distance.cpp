@@ -12,8 +12,8 @@
 
 namespace muslin {
 
-struct SignedDistance::Parts {
-  Parts(ConstVectors positions, OrientedTriangles oriented)
+struct SignedDistance::Impl {
+  Impl(ConstVectors positions, OrientedTriangles oriented)
       : closest(positions, oriented.triangles),
         winding(positions, oriented.triangles),
         watertight(oriented.watertight) {}
@@ -26,9 +26,9 @@ struct SignedDistance::Parts {
 
 SignedDistance::SignedDistance(const Mesh& mesh) {
   const Triangulation triangulation = triangulate(mesh);
-  parts_ = std::make_unique<Parts>(mesh.positions, orient(mesh.positions, triangulation.triangles));
+  impl_ = std::make_unique<Impl>(mesh.positions, orient(mesh.positions, triangulation.triangles));
   for (const Vec3i& triangle : triangulation.triangles)
-    for (int k = 0; k < 3; ++k) parts_->bounds.extend(mesh.positions[static_cast<std::size_t>(triangle[k])]);
+    for (int k = 0; k < 3; ++k) impl_->bounds.extend(mesh.positions[static_cast<std::size_t>(triangle[k])]);
   if (triangulation.triangles.empty())
     throw Error(ErrorKind::input, "the distance of a mesh without faces was asked for", "give it faces");
 }
@@ -37,21 +37,21 @@ SignedDistance::~SignedDistance() = default;
 SignedDistance::SignedDistance(SignedDistance&&) noexcept = default;
 SignedDistance& SignedDistance::operator=(SignedDistance&&) noexcept = default;
 
-double SignedDistance::distance(const Vec3& point) const { return parts_->closest(point).distance; }
+double SignedDistance::distance(const Vec3& point) const { return impl_->closest(point).distance; }
 
-bool SignedDistance::inside(const Vec3& point) const { return parts_->winding(point) > 0.5; }
+bool SignedDistance::inside(const Vec3& point) const { return impl_->winding(point) > 0.5; }
 
 double SignedDistance::operator()(const Vec3& point) const {
   const double magnitude = distance(point);
   return magnitude > 0 && inside(point) ? -magnitude : magnitude;
 }
 
-const Box& SignedDistance::bounds() const { return parts_->bounds; }
+const Box& SignedDistance::bounds() const { return impl_->bounds; }
 
-bool SignedDistance::watertight() const { return parts_->watertight; }
+bool SignedDistance::watertight() const { return impl_->watertight; }
 
 SurfacePoint SignedDistance::nearest(const Vec3& point, double max_distance, int hint) const {
-  const ClosestPoint closest = parts_->closest(point, max_distance, hint);
+  const ClosestPoint closest = impl_->closest(point, max_distance, hint);
   return {closest.distance, closest.triangle};
 }
 

@@ -41,8 +41,8 @@ class SignedDistance {
   const Box& bounds() const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// A regular grid of sample points: sample (i,j,k) lies at origin + width·(i,j,k); i runs fastest.

@@ -12,9 +12,13 @@ namespace {
 constexpr std::size_t grain = 8192;  // vertices
 /// Contact adds at most this times the mass to a diagonal block of the preconditioner. With more, float and the
 /// packed factors of sixteen vertices would lose masses.
-constexpr float most_relative = 1e5;
+constexpr float max_relative = 1e5;
 
 }  // namespace
+
+void Potential::linearize(ConstVectors x, Linearization& into, std::size_t first) const {
+  into.add_general(*this, first, x);
+}
 
 void Linearization::reset(std::span<const double> masses, std::span<const std::uint8_t> fixed, double scale) {
   masses_ = masses;
@@ -29,8 +33,8 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   for (std::size_t v = 0; v < masses.size(); ++v) identity_.data()[v] = static_cast<float>(masses[v]);
 }
 
-Couplings& Linearization::couplings(const std::shared_ptr<const CouplingPattern>& pattern,
-                                    std::size_t first) {
+SpringHessian& Linearization::couplings(const std::shared_ptr<const EliminationOrder>& pattern,
+                                        std::size_t first) {
   for (const auto& set : storage_) {
     if (&set->pattern() != pattern.get() || set->first() != first) continue;
     if (std::find(sets_.begin(), sets_.end(), set.get()) == sets_.end()) {
@@ -39,7 +43,7 @@ Couplings& Linearization::couplings(const std::shared_ptr<const CouplingPattern>
     }
     return *set;
   }
-  storage_.push_back(std::make_unique<Couplings>(pattern, first));
+  storage_.push_back(std::make_unique<SpringHessian>(pattern, first));
   sets_.push_back(storage_.back().get());
   return *storage_.back();
 }
@@ -87,13 +91,15 @@ void Linearization::cover_gap(std::size_t begin, std::size_t end) {
     sets_.push_back(set.get());
     return;
   }
-  const auto pattern = std::make_shared<const CouplingPattern>(std::span<const CouplingRun>(), count);
-  storage_.push_back(std::make_unique<Couplings>(pattern, begin));
+  const auto pattern = std::make_shared<const EliminationOrder>(std::span<const CouplingRun>(), count);
+  storage_.push_back(std::make_unique<SpringHessian>(pattern, begin));
   sets_.push_back(storage_.back().get());
 }
 
 void Linearization::finish() {
-  const auto by_vertex = [](const Couplings* p, const Couplings* q) { return p->first() < q->first(); };
+  const auto by_vertex = [](const SpringHessian* p, const SpringHessian* q) {
+    return p->first() < q->first();
+  };
   std::sort(sets_.begin(), sets_.end(), by_vertex);
   std::size_t covered = 0;
   const std::size_t with_couplings = sets_.size();
@@ -112,10 +118,10 @@ void Linearization::finish() {
     return std::find(matrices_.begin(), matrices_.end(), m.get()) == matrices_.end();
   });
   for (std::size_t i = 0; i < relative_count_; ++i) relatives_[i]->finish();
-  if (has_rest()) find_rest_diagonal();
+  if (has_remainder()) find_remainder_diagonal();
 }
 
-void Linearization::find_rest_diagonal() {
+void Linearization::find_remainder_diagonal() {
   upper_.resize(size());
   lower_.resize(size());
   const Floats u = upper_.data(), l = lower_.data();
@@ -126,8 +132,8 @@ void Linearization::find_rest_diagonal() {
   }
   for (std::size_t i = 0; i < relative_count_; ++i) {
     const auto first = static_cast<std::ptrdiff_t>(relatives_[i]->first());
-    const double stiffest = relatives_[i]->add_diagonal(
-        identity() + first, this->fixed() + first, most_relative, u + first, l + first);
+    const double stiffest = relatives_[i]->add_diagonal(identity() + first, this->fixed() + first,
+                                                        max_relative, u + first, l + first);
     stiffest_relative_ = std::max(stiffest_relative_, stiffest);
   }
   if (generals_.empty()) return;
@@ -147,15 +153,16 @@ void Linearization::find_rest_diagonal() {
   });
 }
 
-bool Linearization::has_couplings() const {
-  return std::any_of(sets_.begin(), sets_.end(), [](const Couplings* set) { return set->pattern().block_count() > 0; });
+bool Linearization::has_springs() const {
+  return std::any_of(sets_.begin(), sets_.end(),
+                     [](const SpringHessian* set) { return set->pattern().block_count() > 0; });
 }
 
 void Linearization::project() {
   for (const auto& set : storage_) set->project();
 }
 
-double Linearization::add_rest_product(const Float4* p, Float4* y) {
+double Linearization::add_remainder_product(const Float4* p, Float4* y) {
   double sum = 0;
   for (const SymmetricMatrix* matrix : matrices_)
     sum += matrix->add_product(p + matrix->first(), y + matrix->first());

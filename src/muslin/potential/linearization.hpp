@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
-#include "muslin/potential/couplings.hpp"
 #include "muslin/potential/relative_stiffness.hpp"
+#include "muslin/potential/spring_hessian.hpp"
 #include "muslin/potential/symmetric_matrix.hpp"
 
 namespace muslin {
@@ -34,7 +34,7 @@ class Linearization {
 
   /// Returns the couplings of this pattern on vertices first, first + 1, …; zero at the first request. A
   /// vertex has couplings of one pattern only.
-  Couplings& couplings(const std::shared_ptr<const CouplingPattern>& pattern, std::size_t first);
+  SpringHessian& couplings(const std::shared_ptr<const EliminationOrder>& pattern, std::size_t first);
   /// Returns the blocks of this pattern on vertices first, first + 1, …; zero at the first request. Added
   /// blocks must be symmetric and, with the masses, positive definite.
   SymmetricMatrix& matrix(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first);
@@ -58,23 +58,23 @@ class Linearization {
   }
 
   /// Returns the couplings of all vertices in ascending order, empty ones for vertices without any.
-  std::span<const Couplings* const> sets() const { return sets_; }
+  std::span<const SpringHessian* const> sets() const { return sets_; }
   std::span<const SymmetricMatrix* const> matrices() const { return matrices_; }
-  bool has_couplings() const;
+  bool has_springs() const;
   const float* identity() const { return identity_.data(); }
   const std::uint8_t* fixed() const { return fixed_.data(); }
 
   /// True if K is not zero.
-  bool has_rest() const { return !matrices_.empty() || !generals_.empty() || relative_count_ > 0; }
+  bool has_remainder() const { return !matrices_.empty() || !generals_.empty() || relative_count_ > 0; }
   /// Diagonal blocks of K, with the identity positive definite: xx, xy, xz of `upper` and yy, yz, zz of
   /// `lower`, #V by 3. Relative stiffnesses are scaled down where masses would be lost to rounding.
-  const FloatVectors& rest_upper() const { return upper_; }
-  const FloatVectors& rest_lower() const { return lower_; }
+  const FloatVectors& remainder_upper() const { return upper_; }
+  const FloatVectors& remainder_lower() const { return lower_; }
   /// Returns the largest trace of a diagonal block of relative stiffnesses over the vertex's part of the
   /// identity.
   double stiffest_relative() const { return stiffest_relative_; }
   /// y += K p, #V by 3 and a zero each; returns pᵀK p.
-  double add_rest_product(const Float4* p, Float4* y);
+  double add_remainder_product(const Float4* p, Float4* y);
 
   std::size_t bytes() const;
 
@@ -85,14 +85,14 @@ class Linearization {
     ConstVectors x;
   };
   void cover_gap(std::size_t begin, std::size_t end);
-  void find_rest_diagonal();
+  void find_remainder_diagonal();
 
   std::span<const double> masses_;
   std::span<const std::uint8_t> fixed_;
   double scale_ = 1;
   Buffer<float> identity_, workspace_;
-  std::vector<std::unique_ptr<Couplings>> storage_;  // reused from step to step
-  std::vector<const Couplings*> sets_;               // of this x
+  std::vector<std::unique_ptr<SpringHessian>> storage_;  // reused from step to step
+  std::vector<const SpringHessian*> sets_;               // of this x
   std::vector<std::unique_ptr<SymmetricMatrix>> matrix_storage_;
   std::vector<const SymmetricMatrix*> matrices_;
   std::vector<General> generals_;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "muslin/core/parallel.hpp"
+#include "muslin/potential/linearization.hpp"
 
 namespace muslin {
 namespace {

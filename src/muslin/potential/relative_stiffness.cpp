@@ -25,13 +25,13 @@ void RelativeStiffness::resize(std::size_t terms, std::size_t weights) {
   weights_.resize(weights);
 }
 
-void RelativeStiffness::set(std::size_t t, std::size_t begin, const Vec3& normal, double along, double across,
-                            std::span<const Weight> weights) {
+void RelativeStiffness::set(std::size_t t, std::size_t begin, const Vec3& normal, double normal_stiffness,
+                            double tangential, std::span<const Weight> weights) {
   std::copy(weights.begin(), weights.end(), weights_.begin() + static_cast<std::ptrdiff_t>(begin));
   const Float4 n = {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
                     static_cast<float>(normal.z()), 0};
-  terms_[t] = Term{n, static_cast<float>(along - across), static_cast<float>(across), static_cast<int>(begin),
-                   static_cast<int>(begin + weights.size())};
+  terms_[t] = Term{n, static_cast<float>(normal_stiffness - tangential), static_cast<float>(tangential),
+                   static_cast<int>(begin), static_cast<int>(begin + weights.size())};
 }
 
 void RelativeStiffness::finish() {
@@ -61,7 +61,7 @@ double RelativeStiffness::add_product(const Float4* p, Float4* y) {
       Float4 u = {0, 0, 0, 0};
       for (int k = term.begin; k < term.end; ++k) u += weights_[at(k)].weight * p[weights_[at(k)].vertex];
       const Float4 n = term.normal * u;
-      const Float4 force = term.across * u + term.difference * (n[0] + n[1] + n[2]) * term.normal;
+      const Float4 force = term.tangential * u + term.difference * (n[0] + n[1] + n[2]) * term.normal;
       const Float4 work = force * u;
       forces_[t] = force;
       sum += static_cast<double>(work[0] + work[1] + work[2]);
@@ -94,10 +94,10 @@ double RelativeStiffness::add_diagonal(const float* identity, const std::uint8_t
         const Term& term = terms_[at(shares_[at(k)].term)];
         const float square = shares_[at(k)].weight * shares_[at(k)].weight;
         const Float4 n = square * term.difference * term.normal;
-        const float across = square * term.across;
-        x += n[0] * term.normal + Float4{across, 0, 0, 0};
-        y += n[1] * term.normal + Float4{0, across, 0, 0};
-        zz += n[2] * term.normal[2] + across;
+        const float tangential = square * term.tangential;
+        x += n[0] * term.normal + Float4{tangential, 0, 0, 0};
+        y += n[1] * term.normal + Float4{0, tangential, 0, 0};
+        zz += n[2] * term.normal[2] + tangential;
       }
       const int v = vertices_[i];
       const float trace = x[0] + y[1] + zz, bound = most * identity[v];

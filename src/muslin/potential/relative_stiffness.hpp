@@ -25,9 +25,9 @@ class RelativeStiffness {
   void reset(std::size_t first, std::size_t count);
   /// Makes room for `terms` terms with `weights` weights in all; each is to be set.
   void resize(std::size_t terms, std::size_t weights);
-  /// Sets term t, whose weights are number `begin` and following: `normal` of length 1, along = a ≥ 0 and
-  /// across = b ≥ 0 [kg], each vertex once. Several threads may set terms.
-  void set(std::size_t t, std::size_t begin, const Vec3& normal, double along, double across,
+  /// Sets term t, whose weights are number `begin` and following: `normal` of length 1, normal_stiffness = a
+  /// ≥ 0 and tangential = b ≥ 0 [kg], each vertex once. Several threads may set terms.
+  void set(std::size_t t, std::size_t begin, const Vec3& normal, double normal_stiffness, double tangential,
            std::span<const Weight> weights);
   /// Call when all terms have been set.
   void finish();
@@ -46,7 +46,7 @@ class RelativeStiffness {
  private:
   struct Term {
     Float4 normal;
-    float difference, across;  // a − b and b
+    float difference, tangential;  // a − b and b
     int begin, end;            // weights
   };
   struct Share {

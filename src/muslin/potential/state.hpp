@@ -43,8 +43,8 @@ struct StepContext {
   double length = 0;                      ///< of the step, time_end − time_begin without its rounding [s]
   std::vector<Vec3> anchor;               ///< #V by 3 [m]
   std::vector<Vec3> inertial_prediction;  ///< #V by 3, end positions without forces [m]
-  std::vector<std::uint8_t> turned;       ///< #V, 1 where anchor and prediction are those of a turning rigid
-                                          ///< body; empty: nowhere
+  std::vector<std::uint8_t> rigidly_rotated;  ///< #V, 1 where anchor and prediction are those of a turning
+                                              ///< rigid body; empty: nowhere
   ConstVectors positions;                 ///< #V by 3, at time_begin [m]
   ConstVectors velocities;                ///< #V by 3, at time_begin [m/s]
 };

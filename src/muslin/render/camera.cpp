@@ -12,10 +12,6 @@ namespace {
 
 constexpr double margin = 1.06;
 
-void require(bool good, const char* problem, const char* remedy) {
-  if (!good) throw Error(ErrorKind::usage, problem, remedy);
-}
-
 }  // namespace
 
 Vec2 Camera::project(const Vec3& point, int width, int height) const {

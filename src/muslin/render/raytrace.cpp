@@ -57,9 +57,9 @@ const Look& ground_look() {
 
 }  // namespace
 
-struct Raytracer::Parts {
-  Parts(SceneView given_scene, const Camera& given_camera, const RenderOptions& given_options);
-  ~Parts();
+struct Raytracer::Impl {
+  Impl(SceneView given_scene, const Camera& given_camera, const RenderOptions& given_options);
+  ~Impl();
 
   void build(const FrameView& frame);
   Light trace(int x, int y, std::uint32_t sample) const;
@@ -92,7 +92,7 @@ struct Raytracer::Parts {
   unsigned marker_id = RTC_INVALID_GEOMETRY_ID;
 };
 
-Raytracer::Parts::Parts(SceneView given_scene, const Camera& given_camera, const RenderOptions& given_options)
+Raytracer::Impl::Impl(SceneView given_scene, const Camera& given_camera, const RenderOptions& given_options)
     : scene(std::move(given_scene)), camera(given_camera), options(given_options) {
   const auto within = [](int value, int low, int high, const char* what) {
     if (value < low || value > high)
@@ -136,12 +136,12 @@ Raytracer::Parts::Parts(SceneView given_scene, const Camera& given_camera, const
                 "check that libembree fits this processor");
 }
 
-Raytracer::Parts::~Parts() {
+Raytracer::Impl::~Impl() {
   if (world) rtcReleaseScene(world);
   rtcReleaseDevice(device);
 }
 
-void Raytracer::Parts::build(const FrameView& frame) {
+void Raytracer::Impl::build(const FrameView& frame) {
   if (frame.surfaces.size() != scene.surfaces.size())
     throw Error(ErrorKind::usage, "a frame gives another number of surfaces than the scene",
                 "give one entry for each surface");
@@ -202,12 +202,12 @@ void Raytracer::Parts::build(const FrameView& frame) {
                 "free some memory or draw fewer triangles");
 }
 
-Light Raytracer::Parts::background(float y) const {
+Light Raytracer::Impl::background(float y) const {
   return background_top + std::clamp(y / static_cast<float>(options.height), 0.0f, 1.0f) *
                               (background_bottom - background_top);
 }
 
-float Raytracer::Parts::visible_sun(const Vec3f& origin, std::uint32_t sample) const {
+float Raytracer::Impl::visible_sun(const Vec3f& origin, std::uint32_t sample) const {
   Vec3f s, t;
   sampling::basis(lighting.to_sun, s, t);
   alignas(16) const int valid[4] = {-1, -1, -1, -1};
@@ -233,7 +233,7 @@ float Raytracer::Parts::visible_sun(const Vec3f& origin, std::uint32_t sample) c
   return visible;
 }
 
-Hit Raytracer::Parts::surface_hit(const RTCRayHit& ray, const Vec3f& direction) const {
+Hit Raytracer::Impl::surface_hit(const RTCRayHit& ray, const Vec3f& direction) const {
   Hit hit;
   hit.position = eye + ray.ray.tfar * direction;
   Vec3f geometric(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
@@ -305,7 +305,7 @@ Hit Raytracer::Parts::surface_hit(const RTCRayHit& ray, const Vec3f& direction) 
   return hit;
 }
 
-Light Raytracer::Parts::sky_light(const Hit& hit, std::uint32_t sample) const {
+Light Raytracer::Impl::sky_light(const Hit& hit, std::uint32_t sample) const {
   Vec3f s, t;
   sampling::basis(hit.normal, s, t);
   const Vec3f origin = hit.smooth_position + epsilon * hit.geometric_normal;
@@ -343,7 +343,7 @@ Light Raytracer::Parts::sky_light(const Hit& hit, std::uint32_t sample) const {
   return sum / static_cast<float>(options.sky_rays);  // irradiance / π
 }
 
-Light Raytracer::Parts::lit(const Hit& hit, const Vec3f& to_eye, std::uint32_t sample) const {
+Light Raytracer::Impl::lit(const Hit& hit, const Vec3f& to_eye, std::uint32_t sample) const {
   constexpr float inverse_pi = std::numbers::inv_pi_v<float>;
   const Material& material = *hit.material;
   const Light sky = sky_light(hit, sample);
@@ -372,7 +372,7 @@ Light Raytracer::Parts::lit(const Hit& hit, const Vec3f& to_eye, std::uint32_t s
   return radiance;
 }
 
-Light Raytracer::Parts::trace(int x, int y, std::uint32_t sample) const {
+Light Raytracer::Impl::trace(int x, int y, std::uint32_t sample) const {
   const Vec2f jitter = sampling::pixel_point(sample);
   const float px = static_cast<float>(x) + 0.5f + sampling::tent(jitter.x());
   const float py = static_cast<float>(y) + 0.5f + sampling::tent(jitter.y());
@@ -416,15 +416,15 @@ Light Raytracer::Parts::trace(int x, int y, std::uint32_t sample) const {
 }
 
 Raytracer::Raytracer(SceneView scene, const Camera& camera, const RenderOptions& options)
-    : parts_(std::make_unique<Parts>(std::move(scene), camera, options)) {}
+    : impl_(std::make_unique<Impl>(std::move(scene), camera, options)) {}
 
 Raytracer::~Raytracer() = default;
 
 Image Raytracer::render(const FrameView& frame, const Progress& progress) {
-  Parts& parts = *parts_;
-  parts.build(frame);
+  Impl& impl = *impl_;
+  impl.build(frame);
   progress.at(0, "drawing a frame");
-  const RenderOptions& options = parts.options;
+  const RenderOptions& options = impl.options;
   Image image(options.width, options.height);
   const auto samples = static_cast<std::uint32_t>(options.samples);
   const int columns = (options.width + tile_side - 1) / tile_side;
@@ -439,7 +439,7 @@ Image Raytracer::render(const FrameView& frame, const Progress& progress) {
         Light sum = Light::Zero();
         for (std::uint32_t sample = 0; sample < samples; ++sample) {
           // Tone-maps before averaging, so that one bright sample does not spoil a smooth edge.
-          sum += tone_curve(parts.trace(x, y, first + sample));
+          sum += tone_curve(impl.trace(x, y, first + sample));
         }
         const auto bytes = bytes_of_srgb(srgb_of_linear(sum / static_cast<float>(options.samples)));
         std::copy(bytes.begin(), bytes.end(), image.pixel(x, y));
@@ -456,7 +456,7 @@ Image Raytracer::render(const FrameView& frame, const Progress& progress) {
     progress.at(static_cast<double>(std::min(rows, first_row + band)) / rows, "drawing a frame");
   }
   if (!frame.label.empty()) draw_label(image, frame.label);
-  if (parts.scene.colour_scale) draw_legend(image, *parts.scene.colour_scale);
+  if (impl.scene.colour_scale) draw_legend(image, *impl.scene.colour_scale);
   return image;
 }
 

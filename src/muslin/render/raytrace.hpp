@@ -32,8 +32,8 @@ class Raytracer {
   Image render(const FrameView& frame, const Progress& progress = {});
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace muslin

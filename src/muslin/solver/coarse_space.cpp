@@ -10,12 +10,12 @@
 namespace muslin {
 namespace {
 
-constexpr int lanes = CouplingPattern::lanes;
+constexpr int lanes = EliminationOrder::lanes;
 // The factorisation of couplings leaves smoother errors than that of diagonal blocks.
 constexpr double edges_per_cell = 8, edges_per_cell_of_matrices = 4;
 constexpr int smallest_component = 64;          // vertices
 constexpr std::size_t smallest_part = 1 << 10;  // positions
-constexpr std::size_t most_parts = 4;
+constexpr std::size_t max_parts = 4;
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -38,8 +38,8 @@ class Components {
 
 /// Calls body(earlier, later) for the positions of every coupling.
 template <class Body>
-void for_each_coupling(const CouplingPattern& pattern, const Body& body) {
-  for (const CouplingPattern::Block& block : pattern.blocks()) {
+void for_each_coupling(const EliminationOrder& pattern, const Body& body) {
+  for (const EliminationOrder::Block& block : pattern.blocks()) {
     for (int l = 0; l < lanes; ++l)
       if (block.used >> l & 1)
         body(l + (l < block.cut ? block.first : block.second), block.group * lanes + l);
@@ -68,7 +68,7 @@ CoarseSpace::CoarseSpace(const Linearization& h, ConstVectors rest_positions)
   std::size_t positions = 0, blocks = 0;
   position_.resize(vertex_count_);
   std::vector<int> vertex;  // by position
-  for (const Couplings* set : h.sets()) {
+  for (const SpringHessian* set : h.sets()) {
     sets_.push_back({set->shared_pattern(), set->first(), positions, blocks});
     blocks += set->pattern().block_count();
     for (std::size_t i = 0; i < set->pattern().position_count(); ++i) {
@@ -152,7 +152,7 @@ CoarseSpace::CoarseSpace(const Linearization& h, ConstVectors rest_positions)
   held_.assign(positions, 0);
   bundle_.resize(lanes * blocks);
   bundle();
-  const std::size_t parts = std::clamp<std::size_t>(positions / smallest_part, 1, most_parts);
+  const std::size_t parts = std::clamp<std::size_t>(positions / smallest_part, 1, max_parts);
   sums_.resize(parts);
   for (Sums& sums : sums_) {
     sums.half.resize(3 * grid_matrix_.pattern()->block_count());
@@ -177,13 +177,14 @@ bool CoarseSpace::fits(const Linearization& h, ConstVectors rest_positions) cons
 void CoarseSpace::bundle() {
   int kinds = 0;
   for (const Set& set : sets_)
-    for (const CouplingPattern::Block& block : set.pattern->blocks()) kinds = std::max(kinds, block.kind + 1);
+    for (const EliminationOrder::Block& block : set.pattern->blocks())
+      kinds = std::max(kinds, block.kind + 1);
   std::vector<int> number(grid_.cells().size() * at(kinds), -1);
   std::fill(bundle_.begin(), bundle_.end(), -1);
   bundles_.clear();
   for (const Set& set : sets_) {
     for (std::size_t b = 0; b < set.pattern->block_count(); ++b) {
-      const CouplingPattern::Block& block = set.pattern->blocks()[b];
+      const EliminationOrder::Block& block = set.pattern->blocks()[b];
       for (int l = 0; l < lanes; ++l) {
         if ((block.used >> l & 1) == 0) continue;
         BackgroundGrid::Point p = point(set.begin + at(l + (l < block.cut ? block.first : block.second))),
@@ -208,17 +209,17 @@ void CoarseSpace::bundle() {
     for (float& w : bundle.weights) w /= bundle.count;
 }
 
-void CoarseSpace::add_couplings(const Couplings& couplings, const Set& set, std::size_t part,
+void CoarseSpace::add_couplings(const SpringHessian& couplings, const Set& set, std::size_t part,
                                 Sums& sums) const {
   constexpr std::size_t batch = 16;
   float sx[batch * lanes], sy[batch * lanes], sz[batch * lanes], t[batch * lanes];
-  const CouplingPattern& pattern = couplings.pattern();
+  const EliminationOrder& pattern = couplings.pattern();
   const auto [begin, end] = share(part, pattern.block_count());
   for (std::size_t b = begin; b < end; b += batch) {
     const std::size_t count = std::min(batch, end - b);
     couplings.load(b, count, sx, sy, sz, t);
     for (std::size_t k = 0; k < count; ++k) {
-      const CouplingPattern::Block& block = pattern.blocks()[b + k];
+      const EliminationOrder::Block& block = pattern.blocks()[b + k];
       const int* const bundle = bundle_.data() + (set.first_block + b + k) * lanes;
       for (int l = 0; l < lanes; ++l) {
         if ((block.used >> l & 1) == 0) continue;
@@ -265,7 +266,7 @@ void CoarseSpace::add_matrix(const SymmetricMatrix& matrix, std::size_t part, Fl
 }
 
 void CoarseSpace::add_rest_diagonal(const Linearization& h, std::size_t part, Float4* half) const {
-  const Floats u = h.rest_upper().data(), l = h.rest_lower().data();
+  const Floats u = h.remainder_upper().data(), l = h.remainder_lower().data();
   const auto [begin, end] = share(part, vertex_count_);
   for (std::size_t v = begin; v < end; ++v) {
     const Block3 block = {
@@ -290,7 +291,7 @@ void CoarseSpace::assemble(const Linearization& h) {
     for (std::size_t s = 0; s < sets_.size(); ++s) add_couplings(*h.sets()[s], sets_[s], part, sums);
     add_masses(h, part, sums);
     for (const SymmetricMatrix* matrix : h.matrices()) add_matrix(*matrix, part, sums.half.data());
-    if (h.has_rest()) add_rest_diagonal(h, part, sums.half.data());
+    if (h.has_remainder()) add_rest_diagonal(h, part, sums.half.data());
   });
   Sums& all = sums_[0];
   for (std::size_t part = 1; part < sums_.size(); ++part) {

@@ -36,7 +36,7 @@ class CoarseSpace {
 
  private:
   struct Set {
-    std::shared_ptr<const CouplingPattern> pattern;
+    std::shared_ptr<const EliminationOrder> pattern;
     std::size_t first = 0;  // vertex
     std::size_t begin = 0;  // position
     std::size_t first_block = 0;
@@ -70,7 +70,7 @@ class CoarseSpace {
     std::vector<Square> masses;     // by cell
   };
   void bundle();
-  void add_couplings(const Couplings& couplings, const Set& set, std::size_t part, Sums& sums) const;
+  void add_couplings(const SpringHessian& couplings, const Set& set, std::size_t part, Sums& sums) const;
   void add_masses(const Linearization& h, std::size_t part, Sums& sums) const;
   void add_matrix(const SymmetricMatrix& matrix, std::size_t part, Float4* half) const;
   void add_rest_diagonal(const Linearization& h, std::size_t part, Float4* half) const;

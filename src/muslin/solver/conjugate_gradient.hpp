@@ -15,7 +15,7 @@ enum class NegativeCurvature {
 struct LinearSettings {
   /// Stop at √(rᵀP⁻¹r) ≤ tolerance · its value for x = 0.
   double tolerance = 1e-6;
-  double enough = 0;  ///< or where √(rᵀP⁻¹r) itself is at most this (InnerSolver only)
+  double enough = 0;  ///< or where √(rᵀP⁻¹r) itself is at most this (PcgSolver only)
   int max_iterations = 10000;
   NegativeCurvature negative_curvature = NegativeCurvature::stop;
 };

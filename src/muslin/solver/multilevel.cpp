@@ -106,7 +106,8 @@ void Multilevel::prepare() {
     parallel_for(level.inverse.size(), chunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         float norms = 0;
-        for (int k = level.pattern->first()[i]; k < level.inside[i][0]; ++k) norms += norm(level.matrix.block(k));
+        for (int k = level.pattern->first()[i]; k < level.inside[i][0]; ++k)
+          norms += norm(level.matrix.block(k));
         for (int k = level.inside[i][1]; k < level.pattern->first()[i + 1]; ++k)
           norms += norm(level.matrix.block(k));
         level.added[i] = norms / 2;
@@ -180,7 +181,8 @@ void Multilevel::solve(std::size_t l) {
     return;
   }
   const BlockPattern& pattern = *level.pattern;
-  // Forward sweep from zero: other columns do not contribute yet, and alone form the residual.
+  // Forward sweep from zero. b − A x is then Λ x less the product with all entries that the sweep did not
+  // use.
   parallel_for(count, chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       x[i] = level.inverse[i] *

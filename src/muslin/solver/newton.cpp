@@ -26,14 +26,14 @@ constexpr double forcing_share = 0.25, tightest_of_shells = 0.05, loosest_of_she
 constexpr int max_iterations = 30, max_exact_iterations = 300;
 
 /// Linear iterations after which float has lost what it solves for.
-constexpr int most_in_float = 1000;
+constexpr int max_in_float = 1000;
 
 /// Iterations in which friction is lagged anew. Where forces of contact change from one to the next, so does
 /// the minimum, and none would be reached.
 constexpr int renewals = 3;
 
 /// Iterations in which held vertices that are held back push what is in their way.
-constexpr int most_pushes = 6;
+constexpr int max_pushes = 6;
 
 class Newton {
  public:
@@ -46,7 +46,7 @@ class Newton {
         guard_(problem.guard),
         x_(x),
         workspace_(workspace),
-        inner_(workspace.inner),
+        pcg_(workspace.pcg),
         g_(workspace.g),
         s_(workspace.s),
         d_(workspace.d),
@@ -66,7 +66,7 @@ class Newton {
       report_.failure = "the held vertices cannot reach their targets within this step";
       return report_;
     }
-    inner_.begin_step();
+    pcg_.begin_step();
     evaluate();
     // What falls freely is where it belongs from the first step on, not only as far as a loose solve leads.
     if (state_.previous_velocities.empty() && std::isfinite(imbalance_.norm)) {
@@ -171,23 +171,24 @@ class Newton {
     }
     if (report_.newton_iterations == 0 && held_back_ == 0 && error_.bound(x_, g_)) return done(true);
     if (report_.newton_iterations == max_iterations_) return done(false);
-    if (report_.newton_iterations > 0 && report_.newton_iterations <= most_pushes && held_back_ > 0) push_held();
+    if (report_.newton_iterations > 0 && report_.newton_iterations <= max_pushes && held_back_ > 0)
+      push_held();
     {
       const Stopwatch watch(report_.linearize_seconds);
-      inner_.linearize(full(), x_);
+      pcg_.linearize(full(), x_);
     }
-    if (!problem_.in_double && !inner_.fits_float()) return done(false);
+    if (!problem_.in_double && !pcg_.fits_float()) return done(false);
     if (report_.newton_iterations == 0) forcing_ = loosest();
-    if (imbalance_.largest <= function_.rounding_floor(x_, inner_.stiffest())) return done(true);
+    if (imbalance_.largest <= function_.rounding_floor(x_, pcg_.stiffest())) return done(true);
     ++report_.newton_iterations;
-    inner_.precondition(g_, there_);
+    pcg_.precondition(g_, there_);
     error_.begin(g_, there_);
     const double norm = imbalance_.norm;
-    if (!move() && !(inner_.project() && move())) {
+    if (!move() && !(pcg_.project() && move())) {
       error_.give_up(s_);
       return done(false);
     }
-    inner_.precondition(g_, there_);
+    pcg_.precondition(g_, there_);
     const bool good = error_.end(x_, state_.positions, g_, there_, s_, d_, length_t_);
     const double shrink = imbalance_.norm / norm;
     forcing_ = std::clamp(std::max(0.9 * shrink * shrink, error_.wanted_forcing()), tightest_forcing, loosest());
@@ -196,8 +197,8 @@ class Newton {
 
   /// Springs that buckle make H indefinite. Then loose solves lead nowhere, and tight steps want tight solves.
   double loosest() const {
-    return inner_.has_couplings() ? std::clamp(tolerance_, tightest_forcing, loosest_forcing)
-                                  : std::clamp(forcing_share * tolerance_, tightest_of_shells, loosest_of_shells);
+    return pcg_.has_springs() ? std::clamp(tolerance_, tightest_forcing, loosest_forcing)
+                              : std::clamp(forcing_share * tolerance_, tightest_of_shells, loosest_of_shells);
   }
 
   bool done(bool converged) {
@@ -223,7 +224,7 @@ class Newton {
     linear.tolerance = forcing_;
     {
       const Stopwatch watch(report_.solve_seconds);
-      report_.linear_iterations += solve_linear(full(), x_, g_, linear, inner_, s_).iterations;
+      report_.linear_iterations += solve_linear(full(), x_, g_, linear, pcg_, s_).iterations;
     }
     for_each_vertex(count_, [&](std::size_t v) { s_[v] = -s_[v]; });
     return all_finite(s_) && search();
@@ -287,7 +288,7 @@ class Newton {
   StepGuard* guard_;
   Vectors x_;
   NewtonWorkspace& workspace_;
-  InnerSolver& inner_;
+  PcgSolver& pcg_;
   std::vector<Vec3>&g_, &s_, &d_, &there_;
   std::size_t count_;
   double scale_;
@@ -308,13 +309,13 @@ class Newton {
 }  // namespace
 
 LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
-                          const LinearSettings& settings, InnerSolver& inner, Vectors s) {
+                          const LinearSettings& settings, PcgSolver& pcg, Vectors s) {
   int wasted = 0;
-  if (inner.fits_float()) {
+  if (pcg.fits_float()) {
     double norm;
     LinearSettings in_float = settings;
-    in_float.max_iterations = most_in_float;
-    const LinearReport report = inner.solve(b, in_float, s, norm);
+    in_float.max_iterations = max_in_float;
+    const LinearReport report = pcg.solve(b, in_float, s, norm);
     if (report.converged || report.negative_curvature) return report;
     wasted = report.iterations;
   }
@@ -329,7 +330,7 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
 std::size_t NewtonWorkspace::bytes() const {
   std::size_t vectors = 0;
   for (const auto* v : {&x, &g, &s, &base, &d, &end}) vectors += v->capacity();
-  return vectors * sizeof(Vec3) + inner.bytes();
+  return vectors * sizeof(Vec3) + pcg.bytes();
 }
 
 int snap_to_targets(const StepProblem& problem, Vectors x) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "muslin/solver/incremental_potential.hpp"
-#include "muslin/solver/inner_solver.hpp"
+#include "muslin/solver/pcg_solver.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
@@ -16,14 +16,14 @@ struct NewtonWorkspace {
   std::vector<Vec3> base;  ///< the gradient without contact
   std::vector<Vec3> d;     ///< what of the step is left
   std::vector<Vec3> end;   ///< room for the result
-  InnerSolver inner;
+  PcgSolver pcg;
 
   std::size_t bytes() const;
 };
 
-/// Solves H s = b at the x that `inner` was linearised at; in double where float cannot.
+/// Solves H s = b at the x that `pcg` was linearised at; in double where float cannot.
 LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
-                          const LinearSettings& settings, InnerSolver& inner, Vectors s);
+                          const LinearSettings& settings, PcgSolver& pcg, Vectors s);
 
 /// Moves x, where the step begins, to the minimum of `function` plus the guard's potential, in place; held
 /// vertices to their targets as far as the guard lets them. `function` is made of `problem` and lacks the

@@ -1,5 +1,5 @@
-// Sums over vertices, one for each part of a step (bodies, or groups of them), in parallel and with the same bits
-// for any thread count.
+// Sums over vertices, one for each part of a step (bodies, or groups of them), in parallel and with the same
+// bits for any thread count.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace muslin {
 
-/// Calls add(sums[part_of(v)], v) for v = 0 … count − 1 and returns the sums of `parts` parts. Sum{} is zero, and
-/// has an operator+=.
+/// Calls add(sums[part_of(v)], v) for v = 0 … count − 1 and returns the sums of `parts` parts. Sum{} is zero,
+/// and has an operator+=.
 template <class Sum, class PartOf, class Add>
 std::vector<Sum> sum_by_part(std::size_t count, std::size_t parts, const PartOf& part_of, const Add& add) {
   // Blocks are no smaller than what each of them has to add up.

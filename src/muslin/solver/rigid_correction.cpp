@@ -19,14 +19,15 @@ constexpr double no_weight = 1e-9;  // net weight of a contact on its group
 constexpr int turns = 3;            // Newton iterations for the rotation
 /// Work is corrected by at most this share of the motion: if more is needed, as for bodies at rest, the
 /// motion consists of solver errors. No correction where the energy is hardly convex.
-constexpr double most_share = 0.05, least_curvature = 0.1;
+constexpr double max_share = 0.05, least_curvature = 0.1;
 /// A group is at rest if it moves by less than this share of the displacement by loads.
 constexpr double resting = 0.1;
 
 /// Parts that move together since they touch.
 class Groups {
  public:
-  Groups(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard) : problem_(problem) {
+  Groups(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard)
+      : problem_(problem) {
     int parts = 0;
     for (const int part : problem.parts) parts = std::max(parts, part);
     of_part_.resize(static_cast<std::size_t>(parts) + 1);
@@ -81,8 +82,7 @@ void for_each_outer_contact(const IncrementalPotential& function, StepGuard* gua
     if (group == groups.size() || std::abs(weight) < no_weight) return;
     const Mat3 along = contact.normal * contact.normal.transpose();
     visit(group, Mat3(scale * weight * weight *
-                      (contact.normal_stiffness * along +
-                       contact.tangential * (Mat3::Identity() - along))));
+                      (contact.normal_stiffness * along + contact.tangential * (Mat3::Identity() - along))));
   });
 }
 
@@ -122,7 +122,7 @@ struct MovingGroup {
     if (!(curvature >= least_curvature * inertial) || curvature == 0) return 0;
     if (inertial < mass * resting * resting * falls * falls) return 0;
     const double share = -work / curvature;
-    return std::abs(share) <= most_share ? share : 0;
+    return std::abs(share) <= max_share ? share : 0;
   }
 };
 
@@ -131,7 +131,8 @@ Mat3 rotation_of(const Vec3& angle) {
   return length > 0 ? Eigen::AngleAxisd(length, angle / length).toRotationMatrix() : Mat3::Identity();
 }
 
-/// Returns the largest value of f(v), v < count; infinite or not a number if one of them is.
+/// Calls f(v) once for each v < count, on any thread, and returns the largest value; infinite or not a number
+/// if one of them is.
 template <class F>
 double largest(std::size_t count, const F& f) {
   struct Largest {
@@ -140,11 +141,13 @@ double largest(std::size_t count, const F& f) {
       return {value < other.value || std::isnan(other.value) ? other.value : value};
     }
   };
-  return parallel_sum(count, 2048, Largest{}, [&](std::size_t begin, std::size_t end) {
-           Largest sum;
-           for (std::size_t v = begin; v < end; ++v) sum = sum + Largest{f(v)};
-           return sum;
-         }).value;
+  return parallel_sum(count, 2048, Largest{},
+                      [&](std::size_t begin, std::size_t end) {
+                        Largest sum;
+                        for (std::size_t v = begin; v < end; ++v) sum = sum + Largest{f(v)};
+                        return sum;
+                      })
+      .value;
 }
 
 }  // namespace

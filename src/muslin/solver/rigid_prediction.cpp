@@ -74,8 +74,8 @@ void predict_rigid(Integrator integrator, const State& state, std::size_t first,
     context.inertial_prediction[first + i] = there;
     context.anchor[first + i] = there - context.dt * (velocity + velocities[i]);
   }
-  context.turned.resize(context.anchor.size(), 0);
-  for (std::size_t i = 0; i < 4; ++i) context.turned[first + i] = 1;
+  context.rigidly_rotated.resize(context.anchor.size(), 0);
+  for (std::size_t i = 0; i < 4; ++i) context.rigidly_rotated[first + i] = 1;
 }
 
 }  // namespace muslin

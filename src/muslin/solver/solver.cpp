@@ -1,15 +1,14 @@
 #include "muslin/solver/solver.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "muslin/core/error.hpp"
 #include "muslin/solver/conjugate_gradient.hpp"
 #include "muslin/solver/incremental_potential.hpp"
-#include "muslin/solver/inner_solver.hpp"
 #include "muslin/solver/newton.hpp"
+#include "muslin/solver/pcg_solver.hpp"
 #include "muslin/solver/preconditioner.hpp"
 #include "muslin/solver/symplectic_euler.hpp"
 #include "muslin/solver/vector_operations.hpp"
@@ -29,16 +28,16 @@ StepReport solve_implicit(const SolverSettings& settings, const StepContext& con
 /// definiteness of H: in float, refined with products in double (iterative refinement; Higham, Accuracy and
 /// Stability of Numerical Algorithms, ch. 12), and all in double where that does not converge.
 LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
-                           double tolerance, InnerSolver& inner, Vectors s, Vectors residual) {
+                           double tolerance, PcgSolver& pcg, Vectors s, Vectors residual) {
   constexpr double inner_tolerance = 1e-3;
   constexpr double slowest = 0.3;  // residual after a refinement over that before
   const std::size_t count = b.size();
   LinearSettings linear;
   linear.negative_curvature = NegativeCurvature::pass;
-  inner.begin_step();
-  inner.linearize(function, x);
+  pcg.begin_step();
+  pcg.linearize(function, x);
   LinearReport report;
-  if (inner.fits_float()) {
+  if (pcg.fits_float()) {
     std::vector<Vec3> correction(count), product(count);
     std::fill(s.begin(), s.end(), Vec3::Zero());
     std::copy(b.begin(), b.end(), residual.begin());
@@ -48,7 +47,7 @@ LinearReport solve_exactly(const IncrementalPotential& function, ConstVectors x,
       linear.tolerance = std::max(0.5 * need, inner_tolerance);
       linear.enough = tolerance * first;
       double norm;
-      const LinearReport solved = inner.solve(residual, linear, correction, norm);
+      const LinearReport solved = pcg.solve(residual, linear, correction, norm);
       if (first == 0) first = norm;
       report.relative_residual = first > 0 ? norm / first : 0;
       report.converged = norm <= tolerance * first;
@@ -90,7 +89,7 @@ StepReport solve_linearly_implicit(const SolverSettings& settings, const StepCon
   function.hessian_product(state.positions, coast, rhs);
   for_each_vertex(count, [&](std::size_t v) { rhs[v] = -g[v] - rhs[v]; });
   const LinearReport solved =
-      solve_exactly(function, state.positions, rhs, settings.linear_tolerance, workspace.inner, s, residual);
+      solve_exactly(function, state.positions, rhs, settings.linear_tolerance, workspace.pcg, s, residual);
   x = state.positions;
   StepReport report;
   if (problem.guard) {
@@ -135,14 +134,17 @@ StepReport solve_step(const SolverSettings& settings, const StepContext& context
 
 StepReport Stepper::step(const SolverSettings& settings, const StepContext& context,
                          const StepProblem& problem, State& state) {
-  assert(problem.masses.size() == state.positions.size());
-  assert(problem.fixed.size() == state.positions.size());
-  assert(state.velocities.size() == state.positions.size());
+  require(problem.masses.size() == state.positions.size(), "a step needs one mass for each vertex",
+          "give #V masses");
+  require(problem.fixed.size() == state.positions.size(), "a step needs to know which vertices are fixed",
+          "give #V flags");
+  require(state.velocities.size() == state.positions.size(), "a state needs one velocity for each vertex",
+          "give #V velocities");
   std::vector<Vec3>& x = workspace_->newton.end;
   StepReport report;
   if (problem.guard) {
     if (settings.integrator == Integrator::symplectic_euler)
-      throw Error(ErrorKind::usage, "symplectic_euler does not work with contact",
+      throw Error(ErrorKind::usage, "symplectic_euler does not support contact",
                   "use implicit_euler, bdf2 or linearly_implicit_euler");
     problem.guard->begin(state.positions, problem.fixed);
   }

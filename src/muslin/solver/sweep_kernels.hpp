@@ -1,16 +1,16 @@
-// Kernels are the arithmetic of SplitSystem on groups of 16 vertices, compiled for several instruction sets.
+// Kernels are the arithmetic of EisenstatPcg on groups of 16 vertices, compiled for several instruction sets.
 // All give the same bits.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
-#include "muslin/potential/coupling_pattern.hpp"
+#include "muslin/potential/elimination_order.hpp"
 #include "muslin/potential/float_vectors.hpp"
 
 namespace muslin::sweep_kernels {
 
-inline constexpr int lanes = CouplingPattern::lanes;
+inline constexpr int lanes = EliminationOrder::lanes;
 inline constexpr int vector_size = 3 * lanes;  ///< floats of a group in a vector: 16 x, 16 y, 16 z
 inline constexpr int matrix_size = 6 * lanes;  ///< xx, yx, zx, yy, zy, zz by 16
 inline constexpr int packed_size = 4 * lanes;  ///< words of the same as integers of 21 bits
@@ -24,9 +24,9 @@ struct PackedMatrices {
 /// Groups group_begin … group_end − 1 of a pattern. Vectors by group, `flat` by position.
 struct Sweep {
   int group_begin = 0, group_end = 0;
-  const CouplingPattern::Group* groups = nullptr;
-  const CouplingPattern::Block* blocks = nullptr;
-  const CouplingPattern::Link* links = nullptr;
+  const EliminationOrder::Group* groups = nullptr;
+  const EliminationOrder::Block* blocks = nullptr;
+  const EliminationOrder::Link* links = nullptr;
   const std::uint32_t* coefficients = nullptr;
   const float* units = nullptr;
   PackedMatrices pivots;  ///< M, lower triangular

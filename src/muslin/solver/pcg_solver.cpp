@@ -1,4 +1,4 @@
-#include "muslin/solver/inner_solver.hpp"
+#include "muslin/solver/pcg_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,19 +37,19 @@ double largest_entry(ConstVectors b) {
 
 }  // namespace
 
-void InnerSolver::linearize(const IncrementalPotential& function, ConstVectors x) {
+void PcgSolver::linearize(const IncrementalPotential& function, ConstVectors x) {
   function.linearize(x, h_);
   stiffest_ = system_.factor(h_);
   projected_ = false;
   rest_positions_ = function.rest_positions();
 }
 
-int InnerSolver::patience() const {
+int PcgSolver::patience() const {
   return h_.matrices().empty() ? patience_of_couplings : patience_of_matrices;
 }
 
 /// False where there is none.
-bool InnerSolver::prepare_coarse_space() {
+bool PcgSolver::prepare_coarse_space() {
   if (rest_positions_.size() != h_.size()) return false;
   if (!coarse_space_ || !coarse_space_->fits(h_, rest_positions_)) {
     coarse_space_ = std::make_unique<CoarseSpace>(h_, rest_positions_);
@@ -61,14 +61,14 @@ bool InnerSolver::prepare_coarse_space() {
   return true;
 }
 
-void InnerSolver::precondition(ConstVectors b, Vectors z) {
+void PcgSolver::precondition(ConstVectors b, Vectors z) {
   const double scale = largest_entry(b);
   if (scale == 0) return std::fill(z.begin(), z.end(), Vec3::Zero());
   system_.start(b, 1 / scale);
   system_.precondition(scale, z);
 }
 
-bool InnerSolver::project() {
+bool PcgSolver::project() {
   if (projected_) return false;
   h_.project();
   system_.factor(h_);
@@ -76,7 +76,7 @@ bool InnerSolver::project() {
   return true;
 }
 
-LinearReport InnerSolver::solve(ConstVectors b, const LinearSettings& settings, Vectors s, double& norm) {
+LinearReport PcgSolver::solve(ConstVectors b, const LinearSettings& settings, Vectors s, double& norm) {
   // Scaled to entries of at most 1, far from the ends of float's range.
   const double scale = largest_entry(b);
   LinearReport report;

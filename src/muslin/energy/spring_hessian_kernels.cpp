@@ -1,4 +1,4 @@
-#include "muslin/energy/spring_couplings.hpp"
+#include "muslin/energy/spring_hessian_kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +10,12 @@
 namespace muslin {
 namespace {
 
-constexpr int lanes = CouplingPattern::lanes;
+constexpr int lanes = EliminationOrder::lanes;
 constexpr std::size_t grain = 1024;  // blocks
 constexpr float shortest = static_cast<float>(shortest_spring);
 
 /// x in the order of the pattern, 0 where a position is empty.
-Columns arrange(const CouplingPattern& pattern, ConstVectors x, Linearization& into) {
+Columns arrange(const EliminationOrder& pattern, ConstVectors x, Linearization& into) {
   const std::size_t size = pattern.position_count();
   auto* const to = reinterpret_cast<double*>(into.workspace(2 * 3 * size).data());
   const int* const vertices = pattern.vertices().data();
@@ -34,7 +34,7 @@ Columns arrange(const CouplingPattern& pattern, ConstVectors x, Linearization& i
 
 /// Consecutive blocks and where their couplings are.
 struct Batch {
-  const CouplingPattern::Block* blocks = nullptr;
+  const EliminationOrder::Block* blocks = nullptr;
   std::size_t count = 0;
   const BlockSprings::Type* types = nullptr;
   const float* weights = nullptr;
@@ -43,12 +43,12 @@ struct Batch {
   float* units = nullptr;
 };
 struct Kernels {
-  void (*spring_couplings)(const Batch& batch);
+  void (*spring_hessian_kernels)(const Batch& batch);
   void (*dashpot_couplings)(const Batch& batch);
 };
 
 namespace plain {
-#include "muslin/energy/spring_couplings.inc"
+#include "muslin/energy/spring_hessian_kernels.inc"
 }  // namespace plain
 }  // namespace
 
@@ -57,7 +57,7 @@ namespace plain {
 #pragma GCC target("arch=x86-64-v3")
 namespace {
 namespace avx2 {
-#include "muslin/energy/spring_couplings.inc"
+#include "muslin/energy/spring_hessian_kernels.inc"
 }  // namespace avx2
 }  // namespace
 #pragma GCC pop_options
@@ -65,7 +65,7 @@ namespace avx2 {
 #pragma GCC target("arch=x86-64-v4")
 namespace {
 namespace avx512 {
-#include "muslin/energy/spring_couplings.inc"
+#include "muslin/energy/spring_hessian_kernels.inc"
 }  // namespace avx512
 }  // namespace
 #pragma GCC pop_options
@@ -87,8 +87,8 @@ const Kernels& kernels() {
 template <class Kernel>
 void for_each_batch(const BlockSprings& springs, ConstVectors x, std::size_t first, Linearization& into,
                     const Kernel& kernel) {
-  Couplings& couplings = into.couplings(springs.pattern, first);
-  const CouplingPattern& pattern = *springs.pattern;
+  SpringHessian& couplings = into.couplings(springs.pattern, first);
+  const EliminationOrder& pattern = *springs.pattern;
   const Columns at = arrange(pattern, x, into);
   parallel_for(pattern.block_count(), grain, [&](std::size_t begin, std::size_t end) {
     Batch batch;
@@ -105,13 +105,12 @@ void for_each_batch(const BlockSprings& springs, ConstVectors x, std::size_t fir
 
 }  // namespace
 
-void set_spring_couplings(const BlockSprings& springs, ConstVectors x, std::size_t first,
-                          Linearization& into) {
-  for_each_batch(springs, x, first, into, kernels().spring_couplings);
+void set_spring_hessian(const BlockSprings& springs, ConstVectors x, std::size_t first, Linearization& into) {
+  for_each_batch(springs, x, first, into, kernels().spring_hessian_kernels);
 }
 
-void add_dashpot_couplings(const BlockSprings& dashpots, ConstVectors x, std::size_t first,
-                           Linearization& into) {
+void add_dashpot_hessian(const BlockSprings& dashpots, ConstVectors x, std::size_t first,
+                         Linearization& into) {
   for_each_batch(dashpots, x, first, into, kernels().dashpot_couplings);
 }
 

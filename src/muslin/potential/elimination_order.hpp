@@ -1,4 +1,4 @@
-// CouplingPattern stores the pairs of coupled vertices of a body, in the elimination order of the inner
+// EliminationOrder stores the pairs of coupled vertices of a body, in the elimination order of the inner
 // solver.
 //
 // Vertices are cut into slabs, eliminated in parallel: even slabs upwards, odd ones downwards, so that two of
@@ -27,7 +27,7 @@ struct CouplingRun {
   int a = 0, b = 0, length = 0;
 };
 
-class CouplingPattern {
+class EliminationOrder {
  public:
   static constexpr int lanes = 16;
 
@@ -57,8 +57,8 @@ class CouplingPattern {
 
   /// `order`, if not null, receives 16 numbers for each block: the coupling of each lane (counted through
   /// `runs`), −1 for none.
-  CouplingPattern(std::span<const CouplingRun> runs, int vertex_count,
-                  std::vector<std::int64_t>* order = nullptr);
+  EliminationOrder(std::span<const CouplingRun> runs, int vertex_count,
+                   std::vector<std::int64_t>* order = nullptr);
 
   int vertex_count() const { return static_cast<int>(position_.size()); }
   std::size_t position_count() const { return vertex_.size(); }

@@ -1,4 +1,4 @@
-// InnerSolver solves the linear systems of a step in float: conjugate gradients on the linearised Hessian
+// PcgSolver solves the linear systems of a step in float: conjugate gradients on the linearised Hessian
 // between the halves of an incomplete factorisation, with a coarse grid where they converge slowly. Errors of
 // float are corrected by the caller's next iteration in double.
 #pragma once
@@ -9,11 +9,11 @@
 #include "muslin/potential/linearization.hpp"
 #include "muslin/solver/coarse_space.hpp"
 #include "muslin/solver/conjugate_gradient.hpp"
-#include "muslin/solver/split_system.hpp"
+#include "muslin/solver/eisenstat_pcg.hpp"
 
 namespace muslin {
 
-class InnerSolver {
+class PcgSolver {
  public:
   /// Begins a step; results do not depend on earlier steps.
   void begin_step() {
@@ -30,7 +30,7 @@ class InnerSolver {
   bool fits_float() const { return stiffest_ <= float_limit; }
 
   /// True if H has springs. Then it is the true Hessian and may be indefinite.
-  bool has_couplings() const { return h_.has_couplings(); }
+  bool has_springs() const { return h_.has_springs(); }
 
   /// Solves H s = b for the Hessian linearised last, as conjugate_gradient does. `norm` receives √(bᵀP⁻¹b).
   /// Where the very first direction has negative curvature, H is replaced by its projection until the next
@@ -52,11 +52,11 @@ class InnerSolver {
   int patience() const;
 
   Linearization h_;
-  SplitSystem system_;
+  EisenstatPcg system_;
   ConstVectors rest_positions_;
   std::unique_ptr<CoarseSpace> coarse_space_;  // kept from step to step
   static constexpr double float_limit = 3e5;
-  double stiffest_ = 0;             // of the factors
+  double stiffest_ = 0;  // of the factors
   bool projected_ = false;
   bool assembled_ = false;          // the coarse matrix, in this step
   double iterations_a_decade_ = 0;  // that the residual fell by, without the coarse space, in this step

@@ -1,4 +1,4 @@
-#include "muslin/potential/couplings.hpp"
+#include "muslin/potential/spring_hessian.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -11,7 +11,7 @@
 namespace muslin {
 namespace {
 
-constexpr int lanes = Couplings::lanes;
+constexpr int lanes = SpringHessian::lanes;
 constexpr int block_words = 2 * lanes;  // of a block
 constexpr float largest = 32767, upper_half = 65536;
 
@@ -72,19 +72,19 @@ MUSLIN_VECTOR_CODE void project_blocks(std::size_t count, float* __restrict sx, 
 
 }  // namespace
 
-Couplings::Couplings(std::shared_ptr<const CouplingPattern> pattern, std::size_t first)
+SpringHessian::SpringHessian(std::shared_ptr<const EliminationOrder> pattern, std::size_t first)
     : pattern_(std::move(pattern)), first_(first) {
   coefficients_.resize(block_words * pattern_->block_count() + 2 * room);
   units_.resize(pattern_->block_count());
   clear();
 }
 
-void Couplings::clear() {
+void SpringHessian::clear() {
   std::memset(coefficients_.data(), 0, coefficients_.size() * sizeof(std::uint32_t));
   std::fill_n(units_.data(), units_.size(), 0.0F);
 }
 
-void Couplings::project() {
+void SpringHessian::project() {
   constexpr std::size_t batch = 64;
   parallel_for(pattern_->block_count(), 16 * batch, [&](std::size_t begin, std::size_t end) {
     float sx[batch * lanes], sy[batch * lanes], sz[batch * lanes], t[batch * lanes];
@@ -97,12 +97,13 @@ void Couplings::project() {
   });
 }
 
-void Couplings::load(std::size_t block, std::size_t count, float* sx, float* sy, float* sz, float* t) const {
+void SpringHessian::load(std::size_t block, std::size_t count, float* sx, float* sy, float* sz,
+                         float* t) const {
   load_blocks(coefficients() + block_words * block, units() + block, count, sx, sy, sz, t);
 }
 
-void Couplings::store(std::size_t block, std::size_t count, const float* sx, const float* sy, const float* sz,
-                      const float* t) {
+void SpringHessian::store(std::size_t block, std::size_t count, const float* sx, const float* sy,
+                          const float* sz, const float* t) {
   store_blocks(coefficients_.data() + room + block_words * block, units_.data() + block, count, sx, sy, sz,
                t);
 }

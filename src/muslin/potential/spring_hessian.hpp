@@ -1,4 +1,4 @@
-// Couplings stores the pairwise couplings of a Hessian in 8 bytes each: vertices a and b share the block
+// SpringHessian stores the pairwise couplings of a Hessian in 8 bytes each: vertices a and b share the block
 //
 //   B = q s sᵀ + t I,   ∂²W/∂x_a² ∋ B,  ∂²W/∂x_a∂x_b ∋ −B,
 //
@@ -12,21 +12,21 @@
 #include <memory>
 #include <utility>
 
-#include "muslin/potential/coupling_pattern.hpp"
+#include "muslin/potential/elimination_order.hpp"
 #include "muslin/potential/float_vectors.hpp"
 
 namespace muslin {
 
-class Couplings {
+class SpringHessian {
  public:
-  static constexpr int lanes = CouplingPattern::lanes;
+  static constexpr int lanes = EliminationOrder::lanes;
 
-  /// Couplings of a body whose vertices are first, first + 1, …; all zero.
-  Couplings(std::shared_ptr<const CouplingPattern> pattern, std::size_t first);
+  /// The Hessian of a body whose vertices are first, first + 1, …; all zero.
+  SpringHessian(std::shared_ptr<const EliminationOrder> pattern, std::size_t first);
   void clear();
 
-  const CouplingPattern& pattern() const { return *pattern_; }
-  const std::shared_ptr<const CouplingPattern>& shared_pattern() const { return pattern_; }
+  const EliminationOrder& pattern() const { return *pattern_; }
+  const std::shared_ptr<const EliminationOrder>& shared_pattern() const { return pattern_; }
   std::size_t first() const { return first_; }
 
   /// s (with √q in it) and t of `count` consecutive blocks, 16 numbers each; zero where a lane has no
@@ -53,7 +53,7 @@ class Couplings {
  private:
   static constexpr std::size_t room = 32;
 
-  std::shared_ptr<const CouplingPattern> pattern_;
+  std::shared_ptr<const EliminationOrder> pattern_;
   std::size_t first_ = 0;
   Buffer<std::uint32_t> coefficients_;
   Buffer<float> units_;

@@ -1,5 +1,5 @@
 // What 8 bytes a coupling keep, and what projecting leaves out.
-#include "muslin/potential/couplings.hpp"
+#include "muslin/potential/spring_hessian.hpp"
 
 #include <cmath>
 #include <random>
@@ -12,7 +12,7 @@
 namespace muslin {
 namespace {
 
-constexpr int lanes = Couplings::lanes;
+constexpr int lanes = SpringHessian::lanes;
 
 struct Numbers {
   float sx[lanes], sy[lanes], sz[lanes], t[lanes];
@@ -22,9 +22,9 @@ struct Numbers {
   }
 };
 
-class CouplingsTest : public testing::Test {
+class SpringHessianTest : public testing::Test {
  protected:
-  CouplingsTest() {
+  SpringHessianTest() {
     std::mt19937 random(1);
     const auto uniform = [&] { return static_cast<float>(random()) / 2147483648.0F - 1; };
     for (std::size_t b = 0; b < pattern_->block_count(); ++b) {
@@ -42,13 +42,13 @@ class CouplingsTest : public testing::Test {
     return n;
   }
 
-  std::shared_ptr<const CouplingPattern> pattern_ =
-      std::make_shared<const CouplingPattern>(std::vector<CouplingRun>{{0, 0, 1, 99}}, 100);
-  Couplings couplings_{pattern_, 0};
+  std::shared_ptr<const EliminationOrder> pattern_ =
+      std::make_shared<const EliminationOrder>(std::vector<CouplingRun>{{0, 0, 1, 99}}, 100);
+  SpringHessian couplings_{pattern_, 0};
   std::vector<Numbers> numbers_;
 };
 
-TEST_F(CouplingsTest, KeepSTo3e5OfTheLargestAndTTo4e3) {
+TEST_F(SpringHessianTest, KeepSTo3e5OfTheLargestAndTTo4e3) {
   for (std::size_t b = 0; b < numbers_.size(); ++b) {
     const Numbers kept = stored(b);
     for (int l = 0; l < lanes; ++l) {
@@ -60,7 +60,7 @@ TEST_F(CouplingsTest, KeepSTo3e5OfTheLargestAndTTo4e3) {
   }
 }
 
-TEST_F(CouplingsTest, ProjectedHaveTheirNonnegativeEigenvaluesOnly) {
+TEST_F(SpringHessianTest, ProjectedHaveTheirNonnegativeEigenvaluesOnly) {
   std::vector<Mat3> expected;
   for (std::size_t b = 0; b < numbers_.size(); ++b) {
     const Numbers kept = stored(b);
@@ -79,7 +79,7 @@ TEST_F(CouplingsTest, ProjectedHaveTheirNonnegativeEigenvaluesOnly) {
   }
 }
 
-TEST_F(CouplingsTest, ClearedAreZero) {
+TEST_F(SpringHessianTest, ClearedAreZero) {
   couplings_.clear();
   const Numbers kept = stored(0);
   for (int l = 0; l < lanes; ++l) EXPECT_EQ(kept.block(l), Mat3::Zero());

@@ -1,5 +1,5 @@
 // The split system against its definition in dense matrices, and the same bits from every kernel.
-#include "muslin/solver/split_system.hpp"
+#include "muslin/solver/eisenstat_pcg.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -17,7 +17,7 @@ namespace muslin {
 namespace {
 
 /// A crumpled box of springs, some of its vertices held, and a few vertices more that nothing couples.
-class SplitSystemTest : public testing::TestWithParam<Vec3i> {
+class EisenstatPcgTest : public testing::TestWithParam<Vec3i> {
  protected:
   static constexpr std::size_t loose = 3;
   void SetUp() override {
@@ -58,8 +58,8 @@ class SplitSystemTest : public testing::TestWithParam<Vec3i> {
   Linearization h_;
 };
 
-TEST_P(SplitSystemTest, PreconditionsByASymmetricPositiveDefiniteMatrixAndMultipliesByTheHessian) {
-  SplitSystem system;
+TEST_P(EisenstatPcgTest, PreconditionsByASymmetricPositiveDefiniteMatrixAndMultipliesByTheHessian) {
+  EisenstatPcg system;
   system.factor(h_);
   const std::vector<Vec3> b = free_vectors(1), c = free_vectors(2);
   std::vector<Vec3> s(b.size()), r(c.size());
@@ -92,9 +92,8 @@ TEST_P(SplitSystemTest, PreconditionsByASymmetricPositiveDefiniteMatrixAndMultip
   }
 }
 
-TEST(SplitSystem, KeepsLightVerticesBesideABodyThatIsMuchStiffer) {
-  const auto pattern =
-      std::make_shared<const SymmetricPattern>(std::vector<std::pair<int, int>>{{0, 1}}, 2);
+TEST(EisenstatPcg, KeepsLightVerticesBesideABodyThatIsMuchStiffer) {
+  const auto pattern = std::make_shared<const SymmetricPattern>(std::vector<std::pair<int, int>>{{0, 1}}, 2);
   constexpr std::size_t light = 10;
   const std::vector<double> masses(light + 2, 1e-4);
   const std::vector<std::uint8_t> fixed(light + 2, 0);
@@ -104,7 +103,7 @@ TEST(SplitSystem, KeepsLightVerticesBesideABodyThatIsMuchStiffer) {
   for (int v = 0; v < 2; ++v)
     for (int k = 0; k < 3; ++k) stiff.block(pattern->find(v, v))[k][k] = 1e5F;
   h.finish();
-  SplitSystem system;
+  EisenstatPcg system;
   system.factor(h);
   std::vector<Vec3> b = test::random_vectors(masses.size(), 1, 3);
   b[light].setZero(), b[light + 1].setZero();
@@ -113,10 +112,10 @@ TEST(SplitSystem, KeepsLightVerticesBesideABodyThatIsMuchStiffer) {
   EXPECT_LT(system.residual(1), 1e-8 * rr);  // nothing couples what is light: the preconditioner is H
 }
 
-TEST_P(SplitSystemTest, TakesCorrectionsOfTheResidualIntoItsDirections) {
-  SplitSystem system;
+TEST_P(EisenstatPcgTest, TakesCorrectionsOfTheResidualIntoItsDirections) {
+  EisenstatPcg system;
   system.factor(h_);
-  const CouplingPattern& pattern = h_.sets()[0]->pattern();
+  const EliminationOrder& pattern = h_.sets()[0]->pattern();
   const std::vector<Vec3> b = free_vectors(1), c = free_vectors(5);
   std::vector<Vec3> s(b.size()), plain(b.size());
   system.start(b, 1);
@@ -136,7 +135,7 @@ TEST_P(SplitSystemTest, TakesCorrectionsOfTheResidualIntoItsDirections) {
   // t = (F Fᵀ)⁻¹ b + c on the body; its quadratic form is that of H.
   const Floats correction = system.correction();
   std::size_t positions = 0;
-  for (const Couplings* set : h_.sets()) positions += set->pattern().position_count();
+  for (const SpringHessian* set : h_.sets()) positions += set->pattern().position_count();
   for (float* each : {correction.x, correction.y, correction.z}) std::fill_n(each, positions, 0.0F);
   for (std::size_t v = 0; v < body_; ++v) {
     const auto i = pattern.position(v);
@@ -162,12 +161,12 @@ TEST_P(SplitSystemTest, TakesCorrectionsOfTheResidualIntoItsDirections) {
   EXPECT_NEAR(by_recurrence, system.start(rest, 1), 1e-4 * std::abs(by_recurrence));
 }
 
-TEST_P(SplitSystemTest, HasTheSameBitsForAnyThreadCount) {
+TEST_P(EisenstatPcgTest, HasTheSameBitsForAnyThreadCount) {
   const std::vector<Vec3> b = free_vectors(1);
   std::vector<std::vector<Vec3>> solutions;
   for (const int threads : {1, 2, 7}) {
     set_thread_count(threads);
-    SplitSystem system;
+    EisenstatPcg system;
     system.factor(h_);
     double rr = system.start(b, 1), alpha = 0, beta = 0;
     for (int i = 0; i < 5; ++i) {
@@ -183,8 +182,8 @@ TEST_P(SplitSystemTest, HasTheSameBitsForAnyThreadCount) {
     EXPECT_EQ(std::memcmp(s.data(), solutions[0].data(), s.size() * sizeof(Vec3)), 0);
 }
 
-TEST_P(SplitSystemTest, RecoversFromASolveThatOverflowed) {
-  SplitSystem system;
+TEST_P(EisenstatPcgTest, RecoversFromASolveThatOverflowed) {
+  EisenstatPcg system;
   system.factor(h_);
   const std::vector<Vec3> b = free_vectors(1);
   const double rr = system.start(b, 1);
@@ -192,20 +191,20 @@ TEST_P(SplitSystemTest, RecoversFromASolveThatOverflowed) {
   EXPECT_EQ(system.start(b, 1), rr);
 }
 
-INSTANTIATE_TEST_SUITE_P(Boxes, SplitSystemTest,
+INSTANTIATE_TEST_SUITE_P(Boxes, EisenstatPcgTest,
                          testing::Values(Vec3i(1, 1, 1), Vec3i(12, 5, 1), Vec3i(6, 7, 8), Vec3i(100, 60, 1)));
 
-TEST(SplitSystem, IsExactOnALine) {
+TEST(EisenstatPcg, IsExactOnALine) {
   // A chain of vertices with couplings B = s sᵀ: its factorisation has no fill, so that one iteration solves.
   const int count = 200;
   const auto pattern =
-      std::make_shared<const CouplingPattern>(std::vector<CouplingRun>{{0, 0, 1, count - 1}}, count);
+      std::make_shared<const EliminationOrder>(std::vector<CouplingRun>{{0, 0, 1, count - 1}}, count);
   const std::vector<double> masses(count, 0.01);
   std::vector<std::uint8_t> fixed(count, 0);
   fixed[70] = 1;
   Linearization h;
   h.reset(masses, fixed, 1);
-  Couplings& couplings = h.couplings(pattern, 0);
+  SpringHessian& couplings = h.couplings(pattern, 0);
   for (std::size_t b = 0; b < pattern->block_count(); ++b) {
     float sx[16] = {}, sy[16] = {}, sz[16] = {}, t[16] = {};
     for (int l = 0; l < 16; ++l) {
@@ -215,7 +214,7 @@ TEST(SplitSystem, IsExactOnALine) {
     couplings.store(b, 1, sx, sy, sz, t);
   }
   h.finish();
-  SplitSystem system;
+  EisenstatPcg system;
   system.factor(h);
   std::vector<Vec3> b = test::random_vectors(count, 1, 1);
   b[70].setZero();
@@ -238,8 +237,8 @@ TEST(SweepKernels, AllHaveTheSameBits) {
   springs.linearize(x, h, 0);
   h.finish();
   ASSERT_EQ(h.sets().size(), 1U);
-  const Couplings& couplings = *h.sets()[0];
-  const CouplingPattern& pattern = couplings.pattern();
+  const SpringHessian& couplings = *h.sets()[0];
+  const EliminationOrder& pattern = couplings.pattern();
   const std::size_t positions = pattern.position_count();
 
   std::vector<std::vector<float>> results;

@@ -1,4 +1,4 @@
-#include "muslin/solver/split_system.hpp"
+#include "muslin/solver/eisenstat_pcg.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,8 +31,8 @@ std::size_t place(std::size_t i) { return i / lanes * vector_size + i % lanes; }
 
 }  // namespace
 
-sweep_kernels::Sweep SplitSystem::sweep(const Part& part, int task) const {
-  const CouplingPattern& pattern = part.couplings->pattern();
+sweep_kernels::Sweep EisenstatPcg::sweep(const Part& part, int task) const {
+  const EliminationOrder& pattern = part.couplings->pattern();
   sweep_kernels::Sweep sweep;
   sweep.group_begin = pattern.tasks()[at(task)].group_begin;
   sweep.group_end = pattern.tasks()[at(task)].group_end;
@@ -49,7 +49,7 @@ sweep_kernels::Sweep SplitSystem::sweep(const Part& part, int task) const {
 
 /// The sum of body(sweep, offset of the part's vectors) over all tasks, phase by phase.
 template <class Body>
-double SplitSystem::forward(const Body& body) const {
+double EisenstatPcg::forward(const Body& body) const {
   double sum = 0;
   for (const Part& part : parts_) {
     const std::vector<int>& phases = part.couplings->pattern().phases();
@@ -63,7 +63,7 @@ double SplitSystem::forward(const Body& body) const {
 }
 
 template <class Body>
-double SplitSystem::backward(const Body& body) const {
+double EisenstatPcg::backward(const Body& body) const {
   double sum = 0;
   for (const Part& part : parts_) {
     const std::vector<int>& phases = part.couplings->pattern().phases();
@@ -80,10 +80,10 @@ double SplitSystem::backward(const Body& body) const {
 /// is prefetched: the elimination order traverses it in as many strides as a level has vertices, which
 /// hardware prefetchers do not predict.
 template <class Value, class Body>
-void SplitSystem::for_each_vertex(const Value* by_vertex, const Body& body) const {
+void EisenstatPcg::for_each_vertex(const Value* by_vertex, const Body& body) const {
   constexpr std::size_t ahead = 64;
   for (const Part& part : parts_) {
-    const CouplingPattern& pattern = part.couplings->pattern();
+    const EliminationOrder& pattern = part.couplings->pattern();
     const std::int64_t first = static_cast<std::int64_t>(part.couplings->first());
     parallel_for(pattern.groups().size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin * lanes; i < end * lanes; ++i) {
@@ -96,12 +96,12 @@ void SplitSystem::for_each_vertex(const Value* by_vertex, const Body& body) cons
 }
 
 /// The identity and which vertices are free, by position.
-void SplitSystem::arrange_identity() {
+void EisenstatPcg::arrange_identity() {
   const float* const identity = h_->identity();
   const std::uint8_t* const fixed = h_->fixed();
   const std::size_t count = h_->size();
-  std::vector<std::shared_ptr<const CouplingPattern>> patterns;
-  for (const Couplings* set : h_->sets()) patterns.push_back(set->shared_pattern());
+  std::vector<std::shared_ptr<const EliminationOrder>> patterns;
+  for (const SpringHessian* set : h_->sets()) patterns.push_back(set->shared_pattern());
   const bool as_before = patterns == patterns_ && identity_by_vertex_.size() == count &&
                          std::memcmp(identity_by_vertex_.data(), identity, count * sizeof(float)) == 0 &&
                          std::memcmp(fixed_by_vertex_.data(), fixed, count) == 0;
@@ -117,11 +117,11 @@ void SplitSystem::arrange_identity() {
   });
 }
 
-double SplitSystem::factor(Linearization& h) {
+double EisenstatPcg::factor(Linearization& h) {
   h_ = &h;
   parts_.clear();
   group_count_ = 0;
-  for (const Couplings* set : h.sets()) {
+  for (const SpringHessian* set : h.sets()) {
     parts_.push_back({set, group_count_});
     group_count_ += set->pattern().groups().size();
   }
@@ -129,17 +129,17 @@ double SplitSystem::factor(Linearization& h) {
   identity_.resize(positions);
   for (auto* packed : {&pivots_, &excess_}) packed->resize(packed_size * group_count_);
   for (auto* units : {&pivot_units_, &excess_units_}) units->resize(group_count_);
-  rest_.resize(h.has_rest() ? 6 * positions : 0);
-  r_ = h.workspace((h.has_rest() ? 15 : 12) * positions).data();
+  rest_.resize(h.has_remainder() ? 6 * positions : 0);
+  r_ = h.workspace((h.has_remainder() ? 15 : 12) * positions).data();
   p_ = r_ + 3 * positions;
   x_ = p_ + 3 * positions;
   c_ = x_ + 3 * positions;
-  further_ = h.has_rest() ? c_ + 3 * positions : nullptr;
+  further_ = h.has_remainder() ? c_ + 3 * positions : nullptr;
   flat_.resize(positions);
 
   arrange_identity();
-  if (h.has_rest()) {
-    const Floats upper = h.rest_upper().data(), lower = h.rest_lower().data();
+  if (h.has_remainder()) {
+    const Floats upper = h.remainder_upper().data(), lower = h.remainder_lower().data();
     for_each_vertex(upper.x, [&](std::int64_t v, std::size_t i) {
       const float* const from[6] = {upper.x, upper.y, upper.z, lower.x, lower.y, lower.z};
       for (std::size_t k = 0; k < 6; ++k)
@@ -162,7 +162,7 @@ double SplitSystem::factor(Linearization& h) {
     sweep_kernels::Diagonal diagonal;
     diagonal.identity = identity_.data() + first;
     diagonal.free = free_.data() + part.first_group;
-    diagonal.rest = h.has_rest() ? rest_.data() + 6 * first : nullptr;
+    diagonal.rest = h.has_remainder() ? rest_.data() + 6 * first : nullptr;
     const std::vector<int>& phases = part.couplings->pattern().phases();
     for (std::size_t phase = 0; phase + 1 < phases.size(); ++phase) {
       const auto tasks = at(phases[phase + 1] - phases[phase]);
@@ -176,7 +176,7 @@ double SplitSystem::factor(Linearization& h) {
   return std::sqrt(static_cast<double>(stiffest.value));
 }
 
-double SplitSystem::start(ConstVectors b, double scale) {
+double EisenstatPcg::start(ConstVectors b, double scale) {
   for_each_vertex(b.data(), [&](std::int64_t v, std::size_t i) {
     for (int c = 0; c < 3; ++c)
       r_[place(i) + at(c) * lanes] = v < 0 ? 0 : static_cast<float>(scale * b[at(v)][c]);
@@ -188,31 +188,31 @@ double SplitSystem::start(ConstVectors b, double scale) {
   });
 }
 
-double SplitSystem::direction(double alpha, double beta) {
+double EisenstatPcg::direction(double alpha, double beta) {
   const double curvature = backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     return sweep_kernels::kernels().direction(sweep, static_cast<float>(alpha), static_cast<float>(beta),
                                               r_ + offset, x_ + offset, p_ + offset, c_ + offset);
   });
-  return h_->has_rest() ? curvature + add_rest_product() : curvature;
+  return h_->has_remainder() ? curvature + add_remainder_product() : curvature;
 }
 
-double SplitSystem::corrected_direction(double alpha, double beta) {
+double EisenstatPcg::corrected_direction(double alpha, double beta) {
   const double curvature = backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     return sweep_kernels::kernels().corrected_direction(
         sweep, static_cast<float>(alpha), static_cast<float>(beta), r_ + offset, x_ + offset, p_ + offset,
         c_ + offset, other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
   });
-  return h_->has_rest() ? curvature + add_rest_product() : curvature;
+  return h_->has_remainder() ? curvature + add_remainder_product() : curvature;
 }
 
-double SplitSystem::residual(double alpha) {
+double EisenstatPcg::residual(double alpha) {
   return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     return sweep_kernels::kernels().residual(sweep, static_cast<float>(alpha), c_ + offset,
                                              further_ ? further_ + offset : nullptr, r_ + offset);
   });
 }
 
-double SplitSystem::residual_and_product(double alpha) {
+double EisenstatPcg::residual_and_product(double alpha) {
   return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     return sweep_kernels::kernels().residual_and_product(
         sweep, static_cast<float>(alpha), c_ + offset, further_ ? further_ + offset : nullptr, r_ + offset,
@@ -220,7 +220,7 @@ double SplitSystem::residual_and_product(double alpha) {
   });
 }
 
-void SplitSystem::find_product() {
+void EisenstatPcg::find_product() {
   other_.resize(flat_.size());
   clear(other_);
   clear(flat_);
@@ -229,7 +229,7 @@ void SplitSystem::find_product() {
 }
 
 /// further = K t; returns tᵀK t.
-double SplitSystem::add_rest_product() {
+double EisenstatPcg::add_remainder_product() {
   t_.resize(h_->size());
   product_.resize(h_->size());
   const Floats from = flat_.data();
@@ -239,7 +239,7 @@ double SplitSystem::add_rest_product() {
     t[v] = Float4{from.x[i], from.y[i], from.z[i], 0};
     y[v] = Float4{0, 0, 0, 0};
   });
-  const double curvature = h_->add_rest_product(t, y);
+  const double curvature = h_->add_remainder_product(t, y);
   for_each_vertex(y, [&](std::int64_t v, std::size_t i) {
     const Float4 value = v < 0 ? Float4{0, 0, 0, 0} : y[v];
     float* const to = further_ + place(i);
@@ -248,12 +248,12 @@ double SplitSystem::add_rest_product() {
   return curvature;
 }
 
-void SplitSystem::precondition(double scale, Vectors z) { solve_backward(1, r_, scale, z); }
+void EisenstatPcg::precondition(double scale, Vectors z) { solve_backward(1, r_, scale, z); }
 
-void SplitSystem::solution(double alpha, double scale, Vectors s) { solve_backward(alpha, p_, scale, s); }
+void EisenstatPcg::solution(double alpha, double scale, Vectors s) { solve_backward(alpha, p_, scale, s); }
 
 /// s = scale · F⁻ᵀ (x̂ + alpha p).
-void SplitSystem::solve_backward(double alpha, const float* p, double scale, Vectors s) {
+void EisenstatPcg::solve_backward(double alpha, const float* p, double scale, Vectors s) {
   backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
     sweep_kernels::kernels().solve_backward(sweep, static_cast<float>(alpha), x_ + offset, p + offset);
     return 0.0;
@@ -264,7 +264,7 @@ void SplitSystem::solve_backward(double alpha, const float* p, double scale, Vec
   });
 }
 
-std::size_t SplitSystem::bytes() const {
+std::size_t EisenstatPcg::bytes() const {
   return identity_.bytes() + rest_.bytes() + pivots_.bytes() + excess_.bytes() + pivot_units_.bytes() +
          excess_units_.bytes() + flat_.bytes() + other_.bytes() + free_.capacity() * sizeof(free_[0]) +
          identity_by_vertex_.capacity() * sizeof(float) + fixed_by_vertex_.capacity() + t_.bytes() +

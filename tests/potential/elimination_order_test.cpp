@@ -1,6 +1,6 @@
 // The order of elimination: every coupling once, seen from both of its ends, nothing read before it is known
 // and nothing shared by tasks that run side by side.
-#include "muslin/potential/coupling_pattern.hpp"
+#include "muslin/potential/elimination_order.hpp"
 
 #include <algorithm>
 #include <map>
@@ -14,7 +14,7 @@
 namespace muslin {
 namespace {
 
-constexpr int lanes = CouplingPattern::lanes;
+constexpr int lanes = EliminationOrder::lanes;
 
 std::vector<CouplingRun> runs_of(const Springs& springs) {
   std::vector<CouplingRun> runs;
@@ -60,7 +60,7 @@ std::multiset<Coupling> couplings_of(const std::vector<CouplingRun>& runs) {
 
 void expect_sound(const std::vector<CouplingRun>& runs, int vertex_count) {
   std::vector<std::int64_t> order;
-  const CouplingPattern pattern(runs, vertex_count, &order);
+  const EliminationOrder pattern(runs, vertex_count, &order);
   ASSERT_EQ(pattern.vertex_count(), vertex_count);
   ASSERT_EQ(order.size(), pattern.block_count() * lanes);
 
@@ -94,9 +94,9 @@ void expect_sound(const std::vector<CouplingRun>& runs, int vertex_count) {
     return Coupling(std::min(u, v), std::max(u, v), kind);
   };
   for (std::size_t g = 0; g < pattern.groups().size(); ++g) {
-    const CouplingPattern::Group& group = pattern.groups()[g];
+    const EliminationOrder::Group& group = pattern.groups()[g];
     for (int b = group.block_begin; b < group.block_end; ++b) {
-      const CouplingPattern::Block& block = pattern.blocks()[static_cast<std::size_t>(b)];
+      const EliminationOrder::Block& block = pattern.blocks()[static_cast<std::size_t>(b)];
       ASSERT_EQ(block.group, static_cast<int>(g));
       for (int l = 0; l < lanes; ++l) {
         const int earlier = l + (l < block.cut ? block.first : block.second);
@@ -118,13 +118,13 @@ void expect_sound(const std::vector<CouplingRun>& runs, int vertex_count) {
       }
     }
     for (int k = group.link_begin; k < group.link_end; ++k) {
-      const CouplingPattern::Link& link = pattern.links()[static_cast<std::size_t>(k)];
+      const EliminationOrder::Link& link = pattern.links()[static_cast<std::size_t>(k)];
       ASSERT_EQ(link.used[0] & link.used[1], 0);
       ASSERT_NE(link.used[0], 0);
       for (std::size_t h = 0; h < 2; ++h) {
         for (int l = 0; l < lanes; ++l) {
           if ((link.used[h] >> l & 1) == 0) continue;
-          const CouplingPattern::Block& block = pattern.blocks()[static_cast<std::size_t>(link.block[h])];
+          const EliminationOrder::Block& block = pattern.blocks()[static_cast<std::size_t>(link.block[h])];
           const int lane = l + link.shift[h];
           ASSERT_NE(block.used >> lane & 1, 0);
           const int earlier = lane + (lane < block.cut ? block.first : block.second);
@@ -140,7 +140,7 @@ void expect_sound(const std::vector<CouplingRun>& runs, int vertex_count) {
   EXPECT_TRUE(from_links == expected);
 }
 
-TEST(CouplingPattern, HoldsEveryCouplingOfALatticeOnceFromBothEnds) {
+TEST(EliminationOrder, HoldsEveryCouplingOfALatticeOnceFromBothEnds) {
   for (const Bracing bracing : {Bracing::kuhn, Bracing::full}) {
     for (const Vec3i& extent : {Vec3i(1, 1, 1), Vec3i(10, 6, 1), Vec3i(100, 60, 1), Vec3i(1, 90, 80),
                                 Vec3i(5, 400, 1), Vec3i(24, 21, 22)}) {
@@ -152,7 +152,7 @@ TEST(CouplingPattern, HoldsEveryCouplingOfALatticeOnceFromBothEnds) {
   }
 }
 
-TEST(CouplingPattern, HoldsCouplingsOfAnyGraph) {
+TEST(EliminationOrder, HoldsCouplingsOfAnyGraph) {
   std::mt19937 random(3);
   std::vector<CouplingRun> runs;
   const int vertices = 500;
@@ -163,28 +163,28 @@ TEST(CouplingPattern, HoldsCouplingsOfAnyGraph) {
   expect_sound(runs, vertices);
 }
 
-TEST(CouplingPattern, NoCouplingsAndNoVerticesAreFine) {
+TEST(EliminationOrder, NoCouplingsAndNoVerticesAreFine) {
   expect_sound({}, 0);
   expect_sound({}, 1);
   expect_sound({}, 20000);
   expect_sound({{0, 3, 7, 2}}, 10);
 }
 
-TEST(CouplingPattern, CutsLargeBodiesIntoTasksThatRunSideBySide) {
+TEST(EliminationOrder, CutsLargeBodiesIntoTasksThatRunSideBySide) {
   const Lattice lattice = test::box_lattice({100, 60, 1});
-  const CouplingPattern pattern(runs_of(build_springs(lattice, Bracing::kuhn)),
-                                static_cast<int>(lattice.vertex_count()));
+  const EliminationOrder pattern(runs_of(build_springs(lattice, Bracing::kuhn)),
+                                 static_cast<int>(lattice.vertex_count()));
   int most = 0;
   for (std::size_t p = 0; p + 1 < pattern.phases().size(); ++p)
     most = std::max(most, pattern.phases()[p + 1] - pattern.phases()[p]);
   EXPECT_EQ(most, 2);
 }
 
-TEST(CouplingPattern, AGroupIsNearlyFullInsideALattice) {
+TEST(EliminationOrder, AGroupIsNearlyFullInsideALattice) {
   const auto fill = [](const Vec3i& extent) {
     const Lattice lattice = test::box_lattice(extent);
     const Springs springs = build_springs(lattice, Bracing::kuhn);
-    const CouplingPattern pattern(runs_of(springs), static_cast<int>(lattice.vertex_count()));
+    const EliminationOrder pattern(runs_of(springs), static_cast<int>(lattice.vertex_count()));
     return static_cast<double>(springs.count) / static_cast<double>(lanes * pattern.block_count());
   };
   EXPECT_GE(fill({400, 240, 1}), 0.78);

@@ -1,4 +1,4 @@
-#include "muslin/potential/coupling_pattern.hpp"
+#include "muslin/potential/elimination_order.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -10,10 +10,10 @@
 namespace muslin {
 namespace {
 
-constexpr int lanes = CouplingPattern::lanes;
+constexpr int lanes = EliminationOrder::lanes;
 constexpr int smallest_slab = 4096;  // vertices: below, threads gain nothing
 constexpr int usual_slab = 131072;   // vertices: every second border between slabs costs iterations
-constexpr int most_slabs = 64;
+constexpr int max_slabs = 64;
 constexpr int reaches_per_slab = 4;  // the layers between slabs must be thin beside the slabs
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
@@ -22,7 +22,7 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 int slab_count(int vertex_count, int reach) {
   const int most = vertex_count / std::max(smallest_slab, reaches_per_slab * reach) / 2 * 2;
   if (most < 2) return 1;
-  return std::clamp(vertex_count / usual_slab / 2 * 2, 2, std::min(most_slabs, most));
+  return std::clamp(vertex_count / usual_slab / 2 * 2, 2, std::min(max_slabs, most));
 }
 
 using Pair = std::pair<int, int>;
@@ -97,13 +97,13 @@ void gather_thin_layers(std::span<const CouplingRun> runs, int slabs, Split& spl
 
 }  // namespace
 
-bool CouplingPattern::Split::before(int u, int v) const {
+bool EliminationOrder::Split::before(int u, int v) const {
   const int task_u = task[at(u)], task_v = task[at(v)];
   return task_u != task_v ? task_u < task_v : rank[at(u)] < rank[at(v)];
 }
 
-CouplingPattern::CouplingPattern(std::span<const CouplingRun> runs, int vertex_count,
-                                 std::vector<std::int64_t>* order) {
+EliminationOrder::EliminationOrder(std::span<const CouplingRun> runs, int vertex_count,
+                                   std::vector<std::int64_t>* order) {
   position_.resize(at(vertex_count));
   const Split split = this->split(runs);
   EarlierEnds earlier;
@@ -131,7 +131,7 @@ CouplingPattern::CouplingPattern(std::span<const CouplingRun> runs, int vertex_c
   make_links();
 }
 
-CouplingPattern::Split CouplingPattern::split(std::span<const CouplingRun> runs) const {
+EliminationOrder::Split EliminationOrder::split(std::span<const CouplingRun> runs) const {
   int reach = 0;
   for (const CouplingRun& run : runs) {
     assert(run.kind >= 0 && run.kind < 256);
@@ -164,7 +164,7 @@ CouplingPattern::Split CouplingPattern::split(std::span<const CouplingRun> runs)
   return split;
 }
 
-void CouplingPattern::arrange(const EarlierEnds& earlier, const Split& split, bool by_count) {
+void EliminationOrder::arrange(const EarlierEnds& earlier, const Split& split, bool by_count) {
   vertex_.clear(), groups_.clear(), tasks_.clear(), phases_.clear();
   const int count = vertex_count();
   std::int64_t most = 0;  // couplings of a vertex with earlier ones
@@ -228,7 +228,7 @@ void CouplingPattern::arrange(const EarlierEnds& earlier, const Split& split, bo
   phases_.push_back(static_cast<int>(tasks_.size()));
 }
 
-void CouplingPattern::make_blocks(const EarlierEnds& earlier, std::vector<std::int64_t>* order) {
+void EliminationOrder::make_blocks(const EarlierEnds& earlier, std::vector<std::int64_t>* order) {
   struct Entry {
     int kind, lane, base;  // base: position of the earlier end less the lane
     std::int64_t index;
@@ -273,7 +273,7 @@ void CouplingPattern::make_blocks(const EarlierEnds& earlier, std::vector<std::i
   }
 }
 
-void CouplingPattern::make_links() {
+void EliminationOrder::make_links() {
   struct Entry {
     int kind, block, shift, lane;  // lane of the earlier end; that of the later one less it
   };
@@ -328,7 +328,7 @@ void CouplingPattern::make_links() {
   }
 }
 
-std::size_t CouplingPattern::bytes() const {
+std::size_t EliminationOrder::bytes() const {
   return (vertex_.size() + position_.size()) * sizeof(int) + groups_.size() * sizeof(Group) +
          blocks_.size() * sizeof(Block) + links_.size() * sizeof(Link) + tasks_.size() * sizeof(Task) +
          phases_.size() * sizeof(int);

@@ -1,7 +1,7 @@
-// SplitSystem applies the Hessian between the halves of an incomplete factorisation, for conjugate gradients
+// EisenstatPcg applies the Hessian between the halves of an incomplete factorisation, for conjugate gradients
 // without a separate preconditioner.
 //
-// H = L + A + Lᵀ + K in the elimination order of a CouplingPattern: A the diagonal blocks, L the couplings
+// H = L + A + Lᵀ + K in the elimination order of an EliminationOrder: A the diagonal blocks, L the couplings
 // with earlier vertices, K the rest without couplings. With D_v = A⁺_v − Σ B⁺ D_u⁻¹ B⁺ over the earlier
 // neighbours u of v (A⁺ and B⁺ projected to positive semidefinite: the D of a diagonal incomplete
 // factorisation; Pommerell 1992, Saad 2003, § 10.3) and D = G Gᵀ, the matrix F = (D + L) G⁻ᵀ makes F Fᵀ ≈ H,
@@ -10,7 +10,7 @@
 //   Ĥ = F⁻¹ H F⁻ᵀ,   Ĥ p = g + F⁻¹ ((A − D) t − u + K t),   t = F⁻ᵀ p,
 //
 // costs one sweep backwards (t, u = −Lᵀ t, g = Gᵀ t) and one forwards: hardly more than with H itself
-// (Eisenstat 1981). docs/theory/split-system.md has the derivation. Held vertices have G⁻¹ = 0 and are
+// (Eisenstat 1981). docs/theory/eisenstat-pcg.md has the derivation. Held vertices have G⁻¹ = 0 and are
 // excluded.
 #pragma once
 
@@ -26,7 +26,7 @@
 namespace muslin {
 
 /// All calls refer to the Linearization of the last call of `factor`, which must not change until the next.
-class SplitSystem {
+class EisenstatPcg {
  public:
   /// Returns the largest ‖A⁺_v‖ / (mass and drag of v) over free vertices.
   double factor(Linearization& h);
@@ -59,7 +59,7 @@ class SplitSystem {
  private:
   /// One set of couplings and its first group among all.
   struct Part {
-    const Couplings* couplings = nullptr;
+    const SpringHessian* couplings = nullptr;
     std::size_t first_group = 0;
   };
   sweep_kernels::Sweep sweep(const Part& part, int task) const;
@@ -69,7 +69,7 @@ class SplitSystem {
   double backward(const Body& body) const;
   template <class Value, class Body>
   void for_each_vertex(const Value* by_vertex, const Body& body) const;
-  double add_rest_product();
+  double add_remainder_product();
   void solve_backward(double alpha, const float* p, double scale, Vectors s);
   void arrange_identity();
 
@@ -80,7 +80,7 @@ class SplitSystem {
   // Sources of identity_ and free_, and their patterns: usually the same from step to step.
   std::vector<float> identity_by_vertex_;
   std::vector<std::uint8_t> fixed_by_vertex_;
-  std::vector<std::shared_ptr<const CouplingPattern>> patterns_;
+  std::vector<std::shared_ptr<const EliminationOrder>> patterns_;
   Buffer<std::uint32_t> pivots_, excess_;
   Buffer<float> pivot_units_, excess_units_;
   std::vector<std::uint16_t> free_;
