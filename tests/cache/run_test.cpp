@@ -2,6 +2,7 @@
 #include "muslin/cache/run.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <string>
 
@@ -106,6 +107,39 @@ TEST(Run, ResumesWithOtherForcesButNotWithOtherBodies) {
   EXPECT_EQ(RunReader(scratch / "run").frame_count(), 4);
 }
 
+TEST(Run, ADamagedSummaryIsAnErrorOnResume) {
+  Scratch scratch;
+  run_scene(scene, options(scratch / "run", 2));
+  RunOptions resumed = options(scratch / "run", 4);
+  resumed.resume = true;
+  const auto sound = nlohmann::json::parse(bytes_of(scratch / "run/run.json"));
+  for (const char* key : {"scene", "frame_rate", "timings"}) {
+    auto damaged = sound;
+    damaged[key] = "nonsense";
+    std::ofstream(scratch / "run/run.json") << damaged.dump();
+    try {
+      run_scene(scene, resumed);
+      FAIL() << key;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input) << key;
+      EXPECT_THAT(error.what(), testing::HasSubstr("run.json: the summary of the run is damaged")) << key;
+    }
+  }
+}
+
+TEST(Run, ColoursAndTheTitleMayChangeOnResume) {
+  Scratch scratch;
+  run_scene(scene, options(scratch / "run", 2));
+  RunOptions resumed = options(scratch / "run", 4);
+  resumed.resume = true;
+  resumed.overrides = {"title=\"Another\"", "body.flag.colour=[0.1, 0.2, 0.3]"};
+  EXPECT_EQ(run_scene(scene, resumed).first_frame, 2);
+  const RunReader run(scratch / "run");
+  EXPECT_EQ(run.frame_count(), 5);
+  EXPECT_EQ(run.title(), "Another");
+  EXPECT_NEAR(run.colour(0).y(), 0.2, 1e-12);
+}
+
 TEST(Run, GoesBackToAnyFrameWhoseStateWasKept) {
   Scratch scratch;
   run_scene(scene, options(scratch / "straight", 6));
@@ -175,8 +209,8 @@ TEST(Run, WarnsOfAStretchLimitThatPinsOverride) {
   const auto of_limit =
       testing::AllOf(testing::HasSubstr("body cloth"), testing::HasSubstr("`stretch_limit` of 1.05"));
   const RunResult straight = run_scene(pulled(0.5), options(scratch / "straight", 6));
-  EXPECT_THAT(straight.warnings,
-              testing::Contains(testing::AllOf(of_limit, testing::HasSubstr("in frames 1 to 6;"))));
+  EXPECT_THAT(straight.warnings, testing::Contains(testing::AllOf(
+                                     of_limit, testing::HasSubstr("at the end of frames 1 to 6;"))));
   const auto summary = [&](const char* run) {
     return nlohmann::json::parse(bytes_of(scratch / run / "run.json"));
   };
@@ -211,7 +245,7 @@ TEST(Run, AStretchLimitMayBeNewOnResume) {
   RunOptions resumed = options(scratch / "run", 6);
   resumed.resume = true;
   EXPECT_THAT(run_scene(pulled(0.5), resumed).warnings,
-              testing::Contains(testing::HasSubstr("in frames 4 to 6;")));
+              testing::Contains(testing::HasSubstr("at the end of frames 4 to 6;")));
   EXPECT_THAT(bytes_of(scratch / "run/stretch.csv"), testing::StartsWith("frame,stretch,limit,body\n4,"));
 }
 

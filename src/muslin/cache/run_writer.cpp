@@ -66,6 +66,26 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string as_text(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 
+/// Reads run.json of a run to resume. Errors: file; input, if it is damaged.
+Json read_summary(const fs::path& directory) {
+  Json run = Json::parse(read_file(directory / "run.json"), nullptr, false);
+  const auto has = [&](const char* key, bool (Json::*is)() const noexcept) {
+    return run.contains(key) && (run[key].*is)();
+  };
+  if (!run.is_object() || !has("scene", &Json::is_object) || !has("frame_rate", &Json::is_number) ||
+      !has("timings", &Json::is_object))
+    throw Error(ErrorKind::input, {(directory / "run.json").string()}, "the summary of the run is damaged",
+                "restart the run without --resume");
+  return run;
+}
+
+/// True for settings of bodies and colliders that may differ on resume, such as body.0.colour.2.
+bool may_change(const std::string& setting) {
+  for (const char* key : {"friction", "stretch_limit", "colour", "keyframes"})
+    if ((setting + ".").find(fmt::format(".{}.", key)) != std::string::npos) return true;
+  return false;
+}
+
 bool has_stretch_limit(const Model& model) {
   const std::vector<BodySettings>& bodies = model.scene.bodies;
   return std::any_of(bodies.begin(), bodies.end(),
@@ -81,26 +101,23 @@ struct BodyCaches {
 }  // namespace
 
 std::vector<std::string> changes_since(const fs::path& directory, const Model& model) {
-  const Json run = Json::parse(read_file(directory / "run.json"), nullptr, false);
+  const Json run = read_summary(directory);
   std::vector<std::string> changes;
-  const Json old_scene = run.value("scene", Json());
   std::vector<std::string> bodies;
-  for (const auto& step : Json::diff(old_scene, parsed_scene(model))) {
+  for (const auto& step : Json::diff(run["scene"], parsed_scene(model))) {
     const std::string setting = dotted(step.value("path", ""));
     changes.push_back(setting);
-    const bool of_collider =
-        setting.starts_with("collider") && setting.find("keyframes") == std::string::npos;
-    if (setting.ends_with(".friction") || setting.ends_with(".stretch_limit")) continue;
-    if (setting.starts_with("body") || of_collider) bodies.push_back(setting);
+    const bool of_body = setting.starts_with("body") || setting.starts_with("collider");
+    if (of_body && !may_change(setting)) bodies.push_back(setting);
   }
   if (!bodies.empty()) {
     throw Error(ErrorKind::input, {directory.string()},
                 "the bodies are not those of the run to resume; changed: " + joined(bodies),
-                "undo the change, or start the run anew without --resume");
+                "undo the change, or restart the run without --resume");
   }
-  if (run.value("frame_rate", 0.0) != model.scene.time.frame_rate) {
+  if (run["frame_rate"] != model.scene.time.frame_rate) {
     throw Error(ErrorKind::input, {directory.string()}, "the frame rate is not that of the run to resume",
-                "undo the change, or start the run anew without --resume");
+                "undo the change, or restart the run without --resume");
   }
   return changes;
 }
@@ -119,7 +136,7 @@ const char* name_of(RunStatus status) {
   return "";
 }
 
-struct RunWriter::Parts {
+struct RunWriter::Impl {
   fs::path directory;
   Simulation& simulation;
   int total_frames;
@@ -136,7 +153,7 @@ struct RunWriter::Parts {
   int durable_frame = -1;  ///< of the newest checkpoint known to be on the disk
   Clock::time_point begin = Clock::now(), last_checkpoint = begin, last_sync = begin;
 
-  Parts(fs::path the_directory, Simulation& the_simulation, int frames, RunHistory the_history)
+  Impl(fs::path the_directory, Simulation& the_simulation, int frames, RunHistory the_history)
       : directory(std::move(the_directory)),
         simulation(the_simulation),
         total_frames(frames),
@@ -157,7 +174,7 @@ struct RunWriter::Parts {
   void write_summary(RunStatus status, const std::string& reason) const;
 };
 
-void RunWriter::Parts::claim() {
+void RunWriter::Impl::claim() {
   std::error_code code;
   if (fs::exists(directory, code) && !fs::is_directory(directory)) {
     throw Error(ErrorKind::file, {directory.string()}, "this is a file, not a directory",
@@ -177,7 +194,7 @@ void RunWriter::Parts::claim() {
   lock = DirectoryLock(directory / "checkpoint", "lock");
 }
 
-void RunWriter::Parts::start() {
+void RunWriter::Impl::start() {
   if (is_run(directory)) remove_run_files(directory);
   write_summary(RunStatus::running, "");
   const Model& model = this->model();
@@ -202,7 +219,7 @@ void RunWriter::Parts::start() {
 }
 
 /// Opens the caches and tables with their first `frames` frames kept; 0 begins them.
-void RunWriter::Parts::open_files(int frames) {
+void RunWriter::Impl::open_files(int frames) {
   const auto mode = frames == 0 ? OutputFile::Mode::replace : OutputFile::Mode::resume;
   for (const Body& body : model().bodies) {
     const BodyFiles files = body_files(body.name);
@@ -224,7 +241,7 @@ void RunWriter::Parts::open_files(int frames) {
     const std::size_t kept = table_length(read_file(path), frames - 1);
     if (kept == 0) {
       throw Error(ErrorKind::input, {path.string()}, "the table has lost its first line",
-                  "start the run anew, without --resume");
+                  "restart the run, without --resume");
     }
     OutputFile file(path, OutputFile::Mode::resume);
     file.truncate(kept);
@@ -241,7 +258,7 @@ void RunWriter::Parts::open_files(int frames) {
 }
 
 /// A table that an earlier version began gets the columns of this one, as it can have only one kind of rows.
-void RunWriter::Parts::renew_diagnostics() const {
+void RunWriter::Impl::renew_diagnostics() const {
   const fs::path path = directory / "diagnostics.csv";
   if (read_file(path).starts_with(diagnostics_header)) return;
   std::string text(diagnostics_header);
@@ -250,7 +267,7 @@ void RunWriter::Parts::renew_diagnostics() const {
 }
 
 /// Those a resume may begin from, the best first.
-std::vector<CheckpointFile> RunWriter::Parts::checkpoints_to_try() const {
+std::vector<CheckpointFile> RunWriter::Impl::checkpoints_to_try() const {
   std::vector<CheckpointFile> all = list_checkpoints(directory);
   if (history.resume_from < 0) return all;
   for (const CheckpointFile& file : all)
@@ -262,16 +279,16 @@ std::vector<CheckpointFile> RunWriter::Parts::checkpoints_to_try() const {
   throw Error(ErrorKind::input, {directory.string()},
               fmt::format("there is no state of frame {} to go on from", history.resume_from),
               frames.empty()
-                  ? "start the run anew"
+                  ? "restart the run"
                   : fmt::format("there are those of frames {}; a run with --keep-states keeps all", frames));
 }
 
-bool RunWriter::Parts::resume() {
+bool RunWriter::Impl::resume() {
   if (!is_run(directory) && history.resume_from < 0) return false;
   const std::vector<CheckpointFile> checkpoints = checkpoints_to_try();
   if (checkpoints.empty()) return false;
   changes = changes_since(directory, model());
-  const Json run = Json::parse(read_file(directory / "run.json"), nullptr, false);
+  const Json run = read_summary(directory);
   std::optional<Error> trouble;
   for (const CheckpointFile& file : checkpoints) {
     try {
@@ -284,7 +301,8 @@ bool RunWriter::Parts::resume() {
       if (stretches)
         for (const LimitedStretch& row : read_stretches(directory / "stretch.csv")) quality.add(row);
       first_frame = file.frame;
-      sessions = run["timings"].value("sessions", Json::array());
+      sessions = run["timings"].value("sessions", Json());
+      if (!sessions.is_array()) sessions = Json::array();
       return true;
     } catch (const Error& error) {
       // The newest checkpoint may be damaged by a power cut; the one before it serves as well.
@@ -296,7 +314,7 @@ bool RunWriter::Parts::resume() {
   throw *trouble;
 }
 
-void RunWriter::Parts::append_points() {
+void RunWriter::Impl::append_points() {
   const Model& model = this->model();
   std::vector<Vec3> points;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -313,7 +331,7 @@ void RunWriter::Parts::append_points() {
   }
 }
 
-void RunWriter::Parts::append_rows() {
+void RunWriter::Impl::append_rows() {
   diagnostics.append(diagnostics_row(simulation.diagnostics()));
   probes.append(probe_rows(simulation));
   quality.add(simulation.diagnostics());
@@ -325,7 +343,7 @@ void RunWriter::Parts::append_rows() {
   }
 }
 
-void RunWriter::Parts::sync() {
+void RunWriter::Impl::sync() {
   for (BodyCaches& cache : caches) {
     cache.skin.sync();
     if (cache.contour) cache.contour->sync();
@@ -337,7 +355,7 @@ void RunWriter::Parts::sync() {
   last_sync = Clock::now();
 }
 
-void RunWriter::Parts::write_checkpoint(bool durable) {
+void RunWriter::Impl::write_checkpoint(bool durable) {
   const fs::path path =
       directory / "checkpoint" / checkpoint_name(simulation.frame(), simulation.steps_done());
   write_atomically(path, as_text(simulation.checkpoint()), durable);
@@ -348,7 +366,7 @@ void RunWriter::Parts::write_checkpoint(bool durable) {
 
 /// Keeps the last two finished frames (or all, if asked to), the newest state that is surely on the disk, and
 /// a state inside a frame only while it is the newest.
-void RunWriter::Parts::prune_checkpoints() const {
+void RunWriter::Impl::prune_checkpoints() const {
   int kept = 0;
   for (const CheckpointFile& file : list_checkpoints(directory)) {
     const bool newest = file.frame == simulation.frame() && file.steps == simulation.steps_done();
@@ -362,7 +380,7 @@ void RunWriter::Parts::prune_checkpoints() const {
   }
 }
 
-void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason) const {
+void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason) const {
   const Model& model = this->model();
   Json run;
   run["muslin"] = {{"version", MUSLIN_VERSION}, {"format", run_format}};
@@ -401,14 +419,12 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
                         {"converged_steps", quality.converged_steps},
                         {"worst_error", quality.worst_error},
                         {"frames_missed", quality.frames_missed}};
-  run["held_back"] = {{"frames", quality.frames_held_back}, {"most", quality.most_held_back}};
+  run["held_back"] = {{"frames", quality.frames_held_back}, {"most", quality.max_held_back}};
   run["crossings"] = {{"at_end", quality.crossings_at_end}, {"frames", quality.frames_crossing}};
   run["overstretched"] = Json::array();
   for (const RunQuality::Overstretched& shell : quality.overstretched) {
-    run["overstretched"].push_back({{"body", shell.body},
-                                    {"frames", shell.frames},
-                                    {"stretch", shell.stretch},
-                                    {"limit", shell.limit}});
+    run["overstretched"].push_back(
+        {{"body", shell.body}, {"frames", shell.frames}, {"stretch", shell.stretch}, {"limit", shell.limit}});
   }
   Json all = sessions;
   all.push_back({{"from_frame", first_frame},
@@ -421,32 +437,32 @@ void RunWriter::Parts::write_summary(RunStatus status, const std::string& reason
 
 RunWriter::RunWriter(fs::path directory, Simulation& simulation, int total_frames, bool resume,
                      RunHistory history)
-    : parts_(std::make_unique<Parts>(std::move(directory), simulation, total_frames, history)) {
+    : impl_(std::make_unique<Impl>(std::move(directory), simulation, total_frames, history)) {
   for (const Body& body : simulation.model().bodies) body_files(body.name);  // refuses impossible names
-  parts_->claim();
+  impl_->claim();
   std::vector<std::string> bodies;
   for (const Body& body : simulation.model().bodies) bodies.push_back(body.name);
-  remove_unfinished_files(parts_->directory, bodies);
-  parts_->resumed = resume && parts_->resume();
-  if (!parts_->resumed) {
-    parts_->start();
+  remove_unfinished_files(impl_->directory, bodies);
+  impl_->resumed = resume && impl_->resume();
+  if (!impl_->resumed) {
+    impl_->start();
     return;
   }
-  write_atomically(parts_->directory / "scene.toml", simulation.model().scene.text);
-  write_atomically(parts_->directory / "selections.json", selections_json(simulation.model()));
-  parts_->prune_checkpoints();
-  parts_->write_summary(RunStatus::running, "");
+  write_atomically(impl_->directory / "scene.toml", simulation.model().scene.text);
+  write_atomically(impl_->directory / "selections.json", selections_json(simulation.model()));
+  impl_->prune_checkpoints();
+  impl_->write_summary(RunStatus::running, "");
 }
 
 RunWriter::~RunWriter() = default;
 
-bool RunWriter::resumed() const { return parts_->resumed; }
-const std::vector<std::string>& RunWriter::changes() const { return parts_->changes; }
+bool RunWriter::resumed() const { return impl_->resumed; }
+const std::vector<std::string>& RunWriter::changes() const { return impl_->changes; }
 
-const RunQuality& RunWriter::quality() const { return parts_->quality; }
+const RunQuality& RunWriter::quality() const { return impl_->quality; }
 
 void RunWriter::write_frame() {
-  Parts& parts = *parts_;
+  Impl& parts = *impl_;
   parts.append_points();
   parts.append_rows();
   const auto now = Clock::now();
@@ -459,14 +475,14 @@ void RunWriter::write_frame() {
 }
 
 void RunWriter::finish(RunStatus status, const std::string& reason) {
-  parts_->sync();
-  parts_->write_checkpoint(true);
-  parts_->write_summary(status, reason);
+  impl_->sync();
+  impl_->write_checkpoint(true);
+  impl_->write_summary(status, reason);
 }
 
 void RunWriter::abandon(const std::string& reason) {
   try {
-    parts_->write_summary(RunStatus::failed, reason);
+    impl_->write_summary(RunStatus::failed, reason);
   } catch (const Error&) {
     // A full disk refuses this as well; the caller reports what filled it.
   }

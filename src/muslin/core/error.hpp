@@ -41,4 +41,9 @@ class Error : public std::runtime_error {
   std::string remedy_;
 };
 
+/// Throws Error(usage) unless `condition`: for arguments that a program must get right.
+inline void require(bool condition, const char* problem, const char* remedy) {
+  if (!condition) throw Error(ErrorKind::usage, problem, remedy);
+}
+
 }  // namespace muslin

@@ -24,7 +24,7 @@ struct Descriptor {
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& path, std::uint64_t most_bytes) {
+std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
   const auto refuse = [&path](const std::string& problem, const std::string& remedy) -> Error {
     return {ErrorKind::file, {path.string()}, problem, remedy};
   };
@@ -36,8 +36,8 @@ std::string read_file(const std::filesystem::path& path, std::uint64_t most_byte
   if (S_ISDIR(status.st_mode)) throw refuse("is a folder", "name a file in it");
   if (!S_ISREG(status.st_mode)) throw refuse("is not a regular file", "copy the data to a file first");
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  if (size > most_bytes) {
-    throw refuse("is larger than " + std::to_string(most_bytes >> 20) + " MiB", "is it the right file?");
+  if (size > max_bytes) {
+    throw refuse("is larger than " + std::to_string(max_bytes >> 20) + " MiB", "is it the right file?");
   }
   std::string bytes;
   try {

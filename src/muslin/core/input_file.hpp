@@ -8,9 +8,9 @@
 
 namespace muslin {
 
-/// Returns all bytes of a regular file of at most `most_bytes`. Never waits for a pipe nor reads a device.
+/// Returns all bytes of a regular file of at most `max_bytes`. Never waits for a pipe nor reads a device.
 /// Errors: file, with the system's message.
 std::string read_file(const std::filesystem::path& path,
-                      std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+                      std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max());
 
 }  // namespace muslin

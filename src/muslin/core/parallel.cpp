@@ -4,6 +4,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
+#include <tbb/parallel_for.h>
 
 namespace muslin {
 namespace {
@@ -18,6 +19,11 @@ void set_thread_count(int count) {
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                   static_cast<std::size_t>(count));
   }
+}
+
+void parallel_blocks(std::size_t blocks, void (*call)(const void* body, std::size_t block),
+                     const void* body) {
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) { call(body, block); });
 }
 
 int thread_count() {

@@ -6,13 +6,14 @@
 #include <cstddef>
 #include <vector>
 
-#include <tbb/parallel_for.h>
-
 namespace muslin {
 
 /// Limits all parallel work of the process to `count` threads; 0 means one per core.
 void set_thread_count(int count);
 int thread_count();
+
+/// Calls call(body, block) for block = 0 … blocks − 1, in parallel and in any order.
+void parallel_blocks(std::size_t blocks, void (*call)(const void* body, std::size_t block), const void* body);
 
 /// Calls body(begin, end) for consecutive blocks of at most `grain` indices that cover [0, count).
 template <class Body>
@@ -21,9 +22,11 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
     if (count > 0) body(std::size_t{0}, count);
     return;
   }
-  const std::size_t blocks = (count + grain - 1) / grain;
-  tbb::parallel_for(std::size_t{0}, blocks,
-                    [&](std::size_t block) { body(block * grain, std::min(count, (block + 1) * grain)); });
+  const auto on_block = [&](std::size_t block) { body(block * grain, std::min(count, (block + 1) * grain)); };
+  parallel_blocks(
+      (count + grain - 1) / grain,
+      [](const void* of, std::size_t block) { (*static_cast<const decltype(on_block)*>(of))(block); },
+      &on_block);
 }
 
 /// Returns the sum of body(begin, end) over the blocks of parallel_for, added in order.
@@ -38,8 +41,8 @@ Value parallel_sum(std::size_t count, std::size_t grain, Value zero, const Body&
   return sum;
 }
 
-/// Returns what body(begin, end, out) appends to `out` (a std::vector<Value>) for the blocks of parallel_for, in
-/// their order.
+/// Returns what body(begin, end, out) appends to `out` (a std::vector<Value>) for the blocks of parallel_for,
+/// in their order.
 template <class Value, class Body>
 std::vector<Value> parallel_collect(std::size_t count, std::size_t grain, const Body& body) {
   std::vector<Value> all;

@@ -11,8 +11,8 @@
 namespace muslin {
 namespace {
 
-constexpr int most_key_parts = 16;
-constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20;
+constexpr int max_key_parts = 16;
+constexpr std::uintmax_t max_bytes = std::uintmax_t{64} << 20;
 
 /// toml++ recurses once per part of a dotted key and has no bound on them: a long enough key overflows the
 /// stack. Counted here before parsing; strings and comments do not count.
@@ -32,9 +32,9 @@ void require_shallow_keys(std::string_view text, const std::string& file) {
       }
       i = j < text.size() && text[j] == '\n' ? j - 1 : j + end.size() - 1;
     } else if (c == '.') {
-      if (++parts > most_key_parts) {
+      if (++parts > max_key_parts) {
         throw Error(ErrorKind::input, Place{file, line, 0},
-                    "a key has more than " + std::to_string(most_key_parts) + " dotted parts",
+                    "a key has more than " + std::to_string(max_key_parts) + " dotted parts",
                     "no key here needs more than three");
       }
     } else if (c == '\n' || c == ',' || c == '=' || c == '[' || c == ']' || c == '{' || c == '}') {
@@ -130,6 +130,6 @@ TomlValue parse_toml(std::string_view text, const std::string& file) {
   }
 }
 
-std::string read_text(const std::filesystem::path& file) { return read_file(file, most_bytes); }
+std::string read_text(const std::filesystem::path& file) { return read_file(file, max_bytes); }
 
 }  // namespace muslin
