@@ -251,8 +251,8 @@ center = [0, 0, 0.15]
   double deepest = 0;
   for (const Vec3& x : cloth) deepest = std::max(deepest, x.z() - 0.1);
   return {{"time it comes to [s]", 1, simulation.diagnostics().time, 1e-9, false},
-          {fmt::format("something is held back: {} vertices", watch.most_held_back()), 1,
-           watch.most_held_back() > 0 ? 1.0 : 0.0, 0, false},
+          {fmt::format("something is held back: {} vertices", watch.max_held_back()), 1,
+           watch.max_held_back() > 0 ? 1.0 : 0.0, 0, false},
           {"way of any vertex into the wall [m]", 0, deepest, 0, false}};
 }
 

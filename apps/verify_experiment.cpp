@@ -127,19 +127,8 @@ void advance(Simulation& simulation, int frames) {
   for (int frame = 0; frame < frames; ++frame) simulation.advance();
 }
 
-namespace {
-
-const Body& find_body(const Simulation& simulation, const std::string& name) {
-  const auto& bodies = simulation.model().bodies;
-  const auto at = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
-  if (at == bodies.end()) throw Error(ErrorKind::usage, "no body " + name, "mend the case");
-  return *at;
-}
-
-}  // namespace
-
 Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity) {
-  const Body& body = find_body(simulation, name);
+  const Body& body = simulation.model().body(name);
   const auto& of = velocity ? simulation.state().velocities : simulation.state().positions;
   Vec3 sum = Vec3::Zero();
   double mass = 0;

@@ -25,7 +25,7 @@ void Watch::look(const Simulation& simulation) {
   largest_kinetic_ = std::max(largest_kinetic_, row.kinetic);
   largest_stretch_ = std::max(largest_stretch_, row.max_stretch);
   unconverged_steps_ += row.steps - row.converged_steps;
-  most_held_back_ = std::max(most_held_back_, row.held_back);
+  max_held_back_ = std::max(max_held_back_, row.held_back);
 }
 
 void Watch::advance(Simulation& simulation, int frames) {

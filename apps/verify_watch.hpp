@@ -22,14 +22,14 @@ class Watch {
   double largest_kinetic() const { return largest_kinetic_; }  ///< [J]
   double largest_stretch() const { return largest_stretch_; }
   int unconverged_steps() const { return unconverged_steps_; }
-  int most_held_back() const { return most_held_back_; }  ///< vertices, of a frame
+  int max_held_back() const { return max_held_back_; }  ///< vertices, of a frame
 
  private:
   double start_potential_;
   double least_energy_, least_balance_;
   double gained_ = 0, gained_share_ = 0, balance_gained_ = 0;
   double fallen_ = 0, largest_kinetic_ = 0, largest_stretch_ = 0;
-  int unconverged_steps_ = 0, most_held_back_ = 0;
+  int unconverged_steps_ = 0, max_held_back_ = 0;
 };
 
 }  // namespace muslin::app

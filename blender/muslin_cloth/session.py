@@ -342,8 +342,8 @@ class Session:
 
 
 # What the command line calls otherwise than the panel.
-WORDS = (("start the run anew without --resume", "use Bake, from the start"),
-         ("start the run anew", "use Bake, from the start"), ("time.steps_per_frame", "Steps per Frame"),
+WORDS = (("restart the run without --resume", "use Bake, from the start"),
+         ("restart the run", "use Bake, from the start"), ("time.steps_per_frame", "Steps per Frame"),
          ("`steps_per_frame`", "Steps per Frame"), ("`voxel_width`", "Voxel Width"), ("voxel_width", "Voxel Width"),
          ("`thickness`", "Thickness"), (", then continue with --resume", ", then press Resume"))
 

@@ -121,7 +121,8 @@ void bind_model(nb::module_& m) {
             std::vector<std::string> sentences;
             if (!model.contact) return sentences;
             const nb::gil_scoped_release nogil;
-            for (const Crossing& crossing : one_of_each_pair(*model.contact, find_crossings(*model.contact, at)))
+            for (const Crossing& crossing :
+                 one_of_each_pair(*model.contact, find_crossings(*model.contact, at)))
               sentences.push_back(describe(*model.contact, crossing));
             return sentences;
           },

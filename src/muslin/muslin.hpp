@@ -3,8 +3,8 @@
 
 #include "muslin/cache/export.hpp"
 #include "muslin/cache/run.hpp"
-#include "muslin/cache/run_reader.hpp"
 #include "muslin/cache/run_quality.hpp"
+#include "muslin/cache/run_reader.hpp"
 #include "muslin/cache/run_writer.hpp"
 #include "muslin/cache/stages.hpp"
 #include "muslin/contact/crossings.hpp"
@@ -33,6 +33,8 @@
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/names.hpp"
 #include "muslin/scene/scene.hpp"
+#include "muslin/scene/validate.hpp"
+#include "muslin/simulation/simulated_body.hpp"
 #include "muslin/simulation/simulation.hpp"
 #include "muslin/surface/contour.hpp"
 #include "muslin/surface/edge_stretch.hpp"

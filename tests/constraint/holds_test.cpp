@@ -137,7 +137,7 @@ TEST(Holds, FollowsItsPointsAndKeepsTheDistanceItHadFromThem) {
   EXPECT_EQ(s.x[2], Vec3(7, -0.5, -1));
   // Put elsewhere by hand, they keep their new distance from their points.
   for (Vec3& x : s.x) x += Vec3(0, 0, 10);
-  s.holds.take_anew(s.pins, 1.5, s.x);
+  s.holds.reanchor(s.pins, 1.5, s.x);
   s.step(1.5, 2);
   EXPECT_EQ(s.x[0], Vec3(5, 0, 8.5));
   EXPECT_EQ(s.x[1], Vec3(0, 4, 10));
@@ -150,10 +150,10 @@ TEST(Holds, TakeAnewWhereVerticesWerePutAndMoveThemOn) {
   Stepper s{{{"turned", {0}, 0, 9, lift}, {"still", {1}, 0, 9, {}}, {"late", {2}, 1, 9, {}}},
             {Vec3(1, 0, 0), Vec3(5, 0, 0), Vec3(0, 0, 0)},
             {}};
-  s.holds.take_anew(s.pins, 0, s.x);  // before the first step nothing holds yet
+  s.holds.reanchor(s.pins, 0, s.x);  // before the first step nothing holds yet
   s.step(0, 0.5);
   s.x = {Vec3(3, 0, 0), Vec3(5, 7, 0), Vec3(8, 0, 0)};
-  s.holds.take_anew(s.pins, 0.5, s.x);
+  s.holds.reanchor(s.pins, 0.5, s.x);
   s.step(0.5, 1);
   const Eigen::Isometry3d moved = lift.at(1) * lift.at(0.5).inverse();
   EXPECT_LT((s.x[0] - moved * Vec3(3, 0, 0)).norm(), 1e-14);

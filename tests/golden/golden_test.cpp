@@ -1,5 +1,6 @@
-// Recorded positions of small scenes: unintended changes of results show here. They are compared to 1e-9 m, and
-// to 1e-7 m where bodies touch, not bit by bit, so that compilers and libraries may round in their own ways.
+// Recorded positions of small scenes: unintended changes of results show here. They are compared to 1e-9 m,
+// and to 1e-7 m where bodies touch, not bit by bit, so that compilers and libraries may round in their own
+// ways.
 //
 // After an intended change: MUSLIN_UPDATE_GOLDEN=1 build/release/tests/test_golden, and say in the commit
 // why.
@@ -236,7 +237,8 @@ Scene scene_of(const Recording& recording) {
   add("sheet", flat_sheet(8, 8, 0.3, 0.3, 0.1));
   add("smaller", flat_sheet(8, 8, 0.29, 0.3, 0.1));
   Mesh wedge;
-  wedge.positions = {{-0.1, 0, -0.1}, {0.1, 0, -0.1}, {0, 0.05, -0.1}, {-0.1, 0, 0.1}, {0.1, 0, 0.1}, {0, 0.05, 0.1}};
+  wedge.positions = {{-0.1, 0, -0.1}, {0.1, 0, -0.1}, {0, 0.05, -0.1},
+                     {-0.1, 0, 0.1},  {0.1, 0, 0.1},  {0, 0.05, 0.1}};
   wedge.add_face(std::array{0, 2, 1});
   wedge.add_face(std::array{3, 4, 5});
   wedge.add_face(std::array{0, 1, 4, 3});
@@ -265,6 +267,7 @@ TEST_P(Golden, PositionsAreAsRecorded) {
   double farthest = 0;
   for (const Vec3& p : x) {
     Vec3 recorded;
+    ASSERT_TRUE(p.allFinite());
     ASSERT_TRUE(in >> recorded.x() >> recorded.y() >> recorded.z()) << file << " is too short";
     farthest = std::max(farthest, (p - recorded).norm());
   }

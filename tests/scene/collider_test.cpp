@@ -389,7 +389,8 @@ TEST_F(ColliderModel, WrongCollidersAreErrorsThatSayWhatToDo) {
       {"shape = 'sphere'\nradius = 1\npivot = [0, 0, 0]\n", "`pivot` stands without `keyframes`"},
       {"shape = 'sphere'\nradius = 1\nvelocity = [0, 0, 0]\n", "stands without `density`"},
       {"shape = 'sphere'\nradius = 1\ndensity = 1\nkeyframes = [{ time = 0 }]\n", "keep one of them"},
-      {"shape = 'mesh'\nmesh = 'box.obj'\nsequence = 'a.mdd'\nframe_rate = 25\n", "has times of its own"},
+      {"shape = 'mesh'\nmesh = 'box.obj'\nsequence = 'a.mdd'\nframe_rate = 25\n",
+       "stores its own frame times"},
       {"shape = 'mesh'\nmesh = 'box.obj'\nstart = 1\n", "`start` stands without `sequence`"},
       {"shape = 'mesh'\nmesh = 'box.obj'\nsequence = 'a.pc2'\ndensity = 1\n", "keep one of them"},
       {"shape = 'mesh'\nmesh = 'box.obj'\nsequence = 'missing.pc2'\n", "missing.pc2"},
@@ -409,7 +410,8 @@ TEST_F(ColliderModel, WrongCollidersAreErrorsThatSayWhatToDo) {
        "scene.toml:9:1: contact.mode is gone: every scene is solved in one way"},
       {"shape = 'plane'\n[contact]\ndistance = 0\n", "`distance`"},
       {"shape = 'plane'\n[contact]\nfriction = -1\n", "`friction`"},
-      {"shape = 'plane'\n[solver]\nintegrator = 'symplectic_euler'\n", "symplectic_euler knows no contact"},
+      {"shape = 'plane'\n[solver]\nintegrator = 'symplectic_euler'\n",
+       "symplectic_euler does not support contact"},
   };
   for (const auto& [text, expected] : wrong) {
     SCOPED_TRACE(text);

@@ -213,17 +213,23 @@ TEST(Scene, EveryEffortHasItsTolerance) {
 }
 
 TEST(Scene, WarnsOfSettingsThatTheIntegratorDoesNotUse) {
-  const auto warnings = [](const std::string& solver) { return parse("[solver]\n" + solver + flag_body).warnings; };
+  const auto warnings = [](const std::string& solver) {
+    return parse("[solver]\n" + solver + flag_body).warnings;
+  };
   using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
   for (const std::string integrator : {"implicit_euler", "bdf2"}) {
-    EXPECT_THAT(warnings("integrator = '" + integrator + "'\neffort = 'draft'\ntolerance = 1e-3\n"), IsEmpty());
+    EXPECT_THAT(warnings("integrator = '" + integrator + "'\neffort = 'draft'\ntolerance = 1e-3\n"),
+                IsEmpty());
     EXPECT_THAT(warnings("integrator = '" + integrator + "'\nlinear_tolerance = 1e-3\n"),
                 ElementsAre(HasSubstr("`linear_tolerance` has no effect on " + integrator)));
   }
-  const std::string linear = "integrator = 'linearly_implicit_euler'\n", symplectic = "integrator = 'symplectic_euler'\n";
+  const std::string linear = "integrator = 'linearly_implicit_euler'\n",
+                    symplectic = "integrator = 'symplectic_euler'\n";
   EXPECT_THAT(warnings(linear + "linear_tolerance = 1e-9\neffort = 'draft'\n"), IsEmpty());
   EXPECT_THAT(warnings(linear + "effort = 'draft'\n[time]\nsteps_per_frame = 4\n"),
               ElementsAre(HasSubstr("`effort` has no effect on linearly_implicit_euler with a number")));
+  EXPECT_THAT(warnings(linear + "effort = 'exact'\n"),
+              ElementsAre(HasSubstr("`effort` has no effect on linearly_implicit_euler but for drafts")));
   EXPECT_THAT(warnings(linear + "tolerance = 0.1\n"), ElementsAre(HasSubstr("`tolerance` has no effect")));
   EXPECT_THAT(warnings(symplectic + "tolerance = 0.1\nlinear_tolerance = 0.1\neffort = 'exact'\n"),
               ElementsAre(HasSubstr("`linear_tolerance`"), HasSubstr("`tolerance`"), HasSubstr("`effort`")));
@@ -285,7 +291,7 @@ INSTANTIATE_TEST_SUITE_P(
               "unknown key `areal_density`"},
         Wrong{flag_body + flag_body, "two of [[body]] called `flag`"},
         Wrong{flag_body + "[[pin]]\n", "has no `where`"},
-        Wrong{flag_body + "[[pin]]\nwhere = {}\n", "`where` selects by nothing"},
+        Wrong{flag_body + "[[pin]]\nwhere = {}\n", "`where` is empty"},
         Wrong{flag_body + "[[pin]]\nbody = 'falg'\nwhere = { nearest = [0, 0, 0] }\n",
               "scene.toml:8:8: there is no body `falg`; did you mean `flag`?"},
         Wrong{flag_body + "[[pin]]\nfrom = 2\nuntil = 1\nwhere = { nearest = [0, 0, 0] }\n", "is not after"},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -69,7 +68,7 @@ Pc2Writer::Pc2Writer(const fs::path& path, std::size_t points, OutputFile::Mode 
   const Pc2Reader existing(path);
   if (existing.points() != points || existing.samples() < samples) {
     throw Error(ErrorKind::input, {path.string()}, "the cache does not fit the checkpoint",
-                "start the run anew, without --resume");
+                "restart the run, without --resume");
   }
   file_ = OutputFile(path, mode);
   file_.truncate(sizeof header + static_cast<std::uint64_t>(samples) * sample_bytes(points));
@@ -85,7 +84,8 @@ void Pc2Writer::write_sample_count() {
 void Pc2Writer::append(ConstVectors points) { append(rounded(points)); }
 
 void Pc2Writer::append(const std::vector<Vec3f>& points) {
-  assert(points.size() == points_);
+  require(points.size() == points_, "a sample has another number of points than its file",
+          "give one position for each");
   file_.append(points.data(), sample_bytes(points.size()));
   ++samples_;
   write_sample_count();
@@ -104,7 +104,7 @@ Pc2Reader::Pc2Reader(fs::path path) : path_(std::move(path)) {
 }
 
 std::vector<Vec3f> Pc2Reader::read(int sample) const {
-  assert(sample >= 0 && sample < samples_);
+  require(sample >= 0 && sample < samples_, "the file has no sample of that number", "samples count from 0");
   std::vector<Vec3f> points(points_);
   std::ifstream in(path_, std::ios::binary);
   in.seekg(static_cast<std::streamoff>(sizeof(Header) +

@@ -9,7 +9,7 @@ namespace muslin {
 namespace {
 
 constexpr double share_to_warn = 0.01;  // of the steps
-constexpr std::size_t most_ranges = 8;
+constexpr std::size_t max_ranges = 8;
 /// Beyond a limit of stretch, as a share of the rest length: the limit is stiff, not hard, and a fall that it
 /// stops goes this far past it.
 constexpr double stretch_slack = 0.01;
@@ -28,7 +28,7 @@ std::string held_back_text(const RunQuality& quality) {
   return fmt::format(
       "pins or colliders that move could not follow their keyframes in {}: something held back up to {} of "
       "their vertices; {}",
-      describe_frames(quality.frames_held_back), quality.most_held_back,
+      describe_frames(quality.frames_held_back), quality.max_held_back,
       ends_in(quality.frames_held_back, quality.last_frame) ? "they still are behind"
                                                             : "they have caught up");
 }
@@ -40,11 +40,14 @@ std::string crossings_text(const RunQuality& quality) {
 }
 
 std::string overstretched_text(const RunQuality::Overstretched& shell) {
+  const bool from_start = !shell.frames.empty() && shell.frames.front() == 0;
   return fmt::format(
-      "body {}: the fabric was stretched to {:.4g} of its length, beyond its `stretch_limit` of {:.4g}, in "
-      "{}; pins, colliders or an abrupt stop pull it farther than the limit allows: move them closer, slow "
-      "them down, or raise `stretch_limit`",
-      shell.body, shell.stretch, shell.limit, describe_frames(shell.frames));
+      "body {}: a triangle was up to {:.4g} times as long as at rest, beyond its `stretch_limit` of {:.4g}, "
+      "at the end of {}; {}",
+      shell.body, shell.stretch, shell.limit, describe_frames(shell.frames),
+      from_start
+          ? "it starts beyond the limit: check `rest_mesh`, or raise `stretch_limit`"
+          : "move pins and colliders that pull it less far apart or more slowly, or raise `stretch_limit`");
 }
 
 }  // namespace
@@ -65,7 +68,7 @@ void RunQuality::add(const Diagnostics& row) {
   worst_error = std::max(worst_error, row.error);
   if (row.converged_steps < row.steps) frames_missed.push_back(row.frame);
   if (row.held_back > 0) frames_held_back.push_back(row.frame);
-  most_held_back = std::max(most_held_back, row.held_back);
+  max_held_back = std::max(max_held_back, row.held_back);
   if (row.crossings > 0) frames_crossing.push_back(row.frame);
   crossings_at_end = row.crossings;
   last_frame = row.frame;
@@ -74,7 +77,7 @@ void RunQuality::add(const Diagnostics& row) {
 std::string describe_frames(const std::vector<int>& frames) {
   std::vector<std::string> ranges;
   std::size_t told = 0;
-  while (told < frames.size() && ranges.size() < most_ranges) {
+  while (told < frames.size() && ranges.size() < max_ranges) {
     std::size_t end = told + 1;
     while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
     ranges.push_back(end - told == 1 ? std::to_string(frames[told])

@@ -23,7 +23,7 @@ struct RunQuality {
   double worst_error = 0;         ///< [m]
   std::vector<int> frames_missed;  ///< with steps that missed their tolerance
   std::vector<int> frames_held_back;  ///< at whose end pins or colliders were behind their keyframes
-  int most_held_back = 0;             ///< vertices, in the worst frame
+  int max_held_back = 0;              ///< vertices, in the worst frame
   std::vector<int> frames_crossing;   ///< at whose end triangles cross
   int crossings_at_end = 0;           ///< pairs of triangles
   std::vector<Overstretched> overstretched;

@@ -64,7 +64,7 @@ bool is_lattice(const Json& body) { return body.value("model", "lattice") == "la
 
 const char* name_of(SurfaceKind surface) { return surface == SurfaceKind::skin ? "skin" : "contour"; }
 
-struct RunReader::Parts {
+struct RunReader::Impl {
   fs::path directory;
   Json run;
   std::string title;
@@ -75,7 +75,25 @@ struct RunReader::Parts {
   int frames = 0;
   double frame_rate = 24;
 
-  const BodyTracks& body(int index) const { return bodies.at(static_cast<std::size_t>(index)); }
+  const BodyTracks& body(int index) const {
+    if (index < 0 || static_cast<std::size_t>(index) >= bodies.size())
+      throw Error(ErrorKind::usage, {directory.string()},
+                  "the run has no body of index " + std::to_string(index),
+                  "it has " + std::to_string(bodies.size()) + ", counted from 0");
+    return bodies[static_cast<std::size_t>(index)];
+  }
+  const Track& lattice(int index) const {
+    if (!body(index).lattice)
+      throw Error(ErrorKind::usage, {directory.string()},
+                  "the body \"" + names[static_cast<std::size_t>(index)] + "\" has no lattice",
+                  "take its skin");
+    return *body(index).lattice;
+  }
+  void require_frame(int frame) const {
+    if (frame < 0 || frame >= frames)
+      throw Error(ErrorKind::usage, {directory.string()}, "the run has no frame " + std::to_string(frame),
+                  "its frames are 0 to " + std::to_string(frames - 1));
+  }
   const Track& track(int index, SurfaceKind surface) const {
     require(index, surface);
     return surface == SurfaceKind::skin ? body(index).skin : *body(index).contour;
@@ -84,89 +102,89 @@ struct RunReader::Parts {
     if (surface == SurfaceKind::skin || body(index).contour) return;
     throw Error(
         ErrorKind::usage, {directory.string()},
-        "the body \"" + names.at(static_cast<std::size_t>(index)) + "\" has no contour: it is no lattice",
+        "the body \"" + names[static_cast<std::size_t>(index)] + "\" has no contour: it is no lattice",
         "take its skin");
   }
 };
 
-RunReader::RunReader(fs::path directory) : parts_(std::make_unique<Parts>()) {
-  Parts& parts = *parts_;
-  parts.directory = std::move(directory);
-  const fs::path summary = parts.directory / "run.json";
+RunReader::RunReader(fs::path directory) : impl_(std::make_unique<Impl>()) {
+  Impl& impl = *impl_;
+  impl.directory = std::move(directory);
+  const fs::path summary = impl.directory / "run.json";
   if (!fs::exists(summary)) {
-    throw Error(ErrorKind::file, {parts.directory.string()}, "there is no run here (no run.json)",
+    throw Error(ErrorKind::file, {impl.directory.string()}, "there is no run here (no run.json)",
                 "name the directory that `muslin run` wrote");
   }
-  parts.run = Json::parse(read_file(summary), nullptr, false);
-  if (!describes_run(parts.run)) {
+  impl.run = Json::parse(read_file(summary), nullptr, false);
+  if (!describes_run(impl.run)) {
     throw Error(ErrorKind::input, {summary.string()}, "this does not describe a run of muslin",
                 "run the scene again");
   }
-  parts.title = parts.run["title"];
-  parts.frame_rate = parts.run["frame_rate"];
-  parts.diagnostics = read_diagnostics(parts.directory / "diagnostics.csv");
-  std::size_t frames = parts.diagnostics.size();
-  for (const Json& body : parts.run["bodies"]) {
-    parts.names.push_back(body["name"]);
-    const BodyFiles files = body_files(parts.names.back());
-    const auto track = [&](const std::string& name) { return Track{Pc2Reader(parts.directory / name)}; };
+  impl.title = impl.run["title"];
+  impl.frame_rate = impl.run["frame_rate"];
+  impl.diagnostics = read_diagnostics(impl.directory / "diagnostics.csv");
+  std::size_t frames = impl.diagnostics.size();
+  for (const Json& body : impl.run["bodies"]) {
+    impl.names.push_back(body["name"]);
+    const BodyFiles files = body_files(impl.names.back());
+    const auto track = [&](const std::string& name) { return Track{Pc2Reader(impl.directory / name)}; };
     BodyTracks tracks{track(files.skin_cache),
                       body.contains("shape"),
                       body.value("shape", Json()) == "plane",
                       {},
                       {},
-                      read_mesh(parts.directory / files.skin_mesh).mesh,
+                      read_mesh(impl.directory / files.skin_mesh).mesh,
                       {},
                       {}};
     const auto fit = [&](const Track& points, std::size_t count, const std::string& file) {
       if (points.cache.points() != count) {
-        throw Error(ErrorKind::input, {(parts.directory / file).string()},
+        throw Error(ErrorKind::input, {(impl.directory / file).string()},
                     "the cache has another number of points than its mesh", "run the scene again");
       }
       frames = std::min(frames, static_cast<std::size_t>(points.cache.samples()));
     };
     fit(tracks.skin, tracks.skin_mesh.vertex_count(), files.skin_cache);
     if (is_lattice(body)) {
-      VtkVoxels voxels = read_voxels(parts.directory / files.lattice_mesh);
+      VtkVoxels voxels = read_voxels(impl.directory / files.lattice_mesh);
       tracks.shape = {std::move(voxels.points), std::move(voxels.voxels)};
       tracks.contour = track(files.contour_cache);
       tracks.lattice = track(files.lattice_cache);
       // A body much smaller than a voxel has no contour.
       if (tracks.contour->cache.points() > 0)
-        tracks.contour_mesh = read_mesh(parts.directory / files.contour_mesh).mesh;
+        tracks.contour_mesh = read_mesh(impl.directory / files.contour_mesh).mesh;
       fit(*tracks.contour, tracks.contour_mesh.vertex_count(), files.contour_cache);
       fit(*tracks.lattice, tracks.shape.rest_positions.size(), files.lattice_cache);
     }
-    parts.bodies.push_back(std::move(tracks));
+    impl.bodies.push_back(std::move(tracks));
   }
   std::vector<std::size_t> points;
-  for (const BodyTracks& body : parts.bodies)
+  for (const BodyTracks& body : impl.bodies)
     points.push_back(body.lattice ? body.lattice->cache.points() : body.skin.cache.points());
-  parts.selections = read_selections(parts.directory / "selections.json", parts.names, points);
-  parts.diagnostics.resize(frames);
-  parts.frames = static_cast<int>(frames);
+  impl.selections = read_selections(impl.directory / "selections.json", impl.names, points);
+  impl.diagnostics.resize(frames);
+  impl.frames = static_cast<int>(frames);
 }
 
 RunReader::~RunReader() = default;
 RunReader::RunReader(RunReader&&) noexcept = default;
 RunReader& RunReader::operator=(RunReader&&) noexcept = default;
 
-const fs::path& RunReader::directory() const { return parts_->directory; }
-const std::string& RunReader::title() const { return parts_->title; }
-std::string RunReader::resolved_scene() const { return parts_->run.value("scene", Json()).dump(); }
-double RunReader::frame_rate() const { return parts_->frame_rate; }
-int RunReader::frame_count() const { return parts_->frames; }
+const fs::path& RunReader::directory() const { return impl_->directory; }
+const std::string& RunReader::title() const { return impl_->title; }
+std::string RunReader::resolved_scene() const { return impl_->run.value("scene", Json()).dump(); }
+double RunReader::frame_rate() const { return impl_->frame_rate; }
+int RunReader::frame_count() const { return impl_->frames; }
 int RunReader::last_frame() const {
-  const Json last = parts_->run.value("frames", Json());
-  return std::max(parts_->frames - 1, last.is_number_integer() ? last.get<int>() : 0);
+  const Json last = impl_->run.value("frames", Json());
+  return std::max(impl_->frames - 1, last.is_number_integer() ? last.get<int>() : 0);
 }
-const std::vector<std::string>& RunReader::bodies() const { return parts_->names; }
-const std::vector<Diagnostics>& RunReader::diagnostics() const { return parts_->diagnostics; }
-const Selections& RunReader::selections() const { return parts_->selections; }
+const std::vector<std::string>& RunReader::bodies() const { return impl_->names; }
+const std::vector<Diagnostics>& RunReader::diagnostics() const { return impl_->diagnostics; }
+const Selections& RunReader::selections() const { return impl_->selections; }
 
 Vec3 RunReader::colour(int body) const {
   const auto b = static_cast<std::size_t>(body);
-  const Json scene = parts_->run.value("scene", Json());
+  const Json scene = impl_->run.value("scene", Json());
   if (!scene.is_object()) return palette_colour(b);
   // Bodies come first, then colliders.
   const std::size_t bodies = scene.value("body", Json::array()).size();
@@ -181,15 +199,15 @@ Vec3 RunReader::colour(int body) const {
 }
 
 RunStatus RunReader::status() const {
-  const std::string status = parts_->run.value("status", "");
+  const std::string status = impl_->run.value("status", "");
   for (RunStatus known : {RunStatus::finished, RunStatus::interrupted, RunStatus::failed})
     if (status == name_of(known)) return known;
   return RunStatus::running;
 }
 
 int RunReader::find_body(const std::string& name) const {
-  const auto& names = parts_->names;
-  const auto& bodies = parts_->bodies;
+  const auto& names = impl_->names;
+  const auto& bodies = impl_->bodies;
   const auto is_soft = [](const BodyTracks& body) { return !body.collider; };
   const auto soft = std::find_if(bodies.begin(), bodies.end(), is_soft);
   if (name.empty() && std::count_if(bodies.begin(), bodies.end(), is_soft) == 1)
@@ -198,30 +216,34 @@ int RunReader::find_body(const std::string& name) const {
   if (found != names.end()) return static_cast<int>(found - names.begin());
   std::string known;
   for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
-  throw Error(ErrorKind::usage, {parts_->directory.string()},
+  throw Error(ErrorKind::usage, {impl_->directory.string()},
               name.empty() ? "the run has several bodies" : "the run has no body \"" + name + "\"",
               "choose one with --body: " + known);
 }
 
-bool RunReader::is_collider(int body) const { return parts_->body(body).collider; }
-bool RunReader::is_plane(int body) const { return parts_->body(body).plane; }
-bool RunReader::has_lattice(int body) const { return parts_->body(body).lattice.has_value(); }
+bool RunReader::is_collider(int body) const { return impl_->body(body).collider; }
+bool RunReader::is_plane(int body) const { return impl_->body(body).plane; }
+bool RunReader::has_lattice(int body) const { return impl_->body(body).lattice.has_value(); }
 const Mesh& RunReader::mesh(int body, SurfaceKind surface) const {
-  parts_->require(body, surface);
-  return surface == SurfaceKind::skin ? parts_->body(body).skin_mesh : parts_->body(body).contour_mesh;
+  impl_->require(body, surface);
+  return surface == SurfaceKind::skin ? impl_->body(body).skin_mesh : impl_->body(body).contour_mesh;
 }
 std::vector<Vec3f> RunReader::points(int body, SurfaceKind surface, int frame) const {
-  return parts_->track(body, surface).at(frame);
+  impl_->require_frame(frame);
+  return impl_->track(body, surface).at(frame);
 }
 std::vector<Vec3f> RunReader::velocities(int body, SurfaceKind surface, int frame) const {
-  return parts_->track(body, surface).velocities(frame, parts_->frames, parts_->frame_rate);
+  impl_->require_frame(frame);
+  return impl_->track(body, surface).velocities(frame, impl_->frames, impl_->frame_rate);
 }
-const RunReader::LatticeShape& RunReader::lattice(int body) const { return parts_->body(body).shape; }
+const RunReader::LatticeShape& RunReader::lattice(int body) const { return impl_->body(body).shape; }
 std::vector<Vec3f> RunReader::lattice_points(int body, int frame) const {
-  return parts_->body(body).lattice.value().at(frame);
+  impl_->require_frame(frame);
+  return impl_->lattice(body).at(frame);
 }
 std::vector<Vec3f> RunReader::lattice_velocities(int body, int frame) const {
-  return parts_->body(body).lattice.value().velocities(frame, parts_->frames, parts_->frame_rate);
+  impl_->require_frame(frame);
+  return impl_->lattice(body).velocities(frame, impl_->frames, impl_->frame_rate);
 }
 
 }  // namespace muslin

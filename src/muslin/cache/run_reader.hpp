@@ -23,7 +23,8 @@ enum class SurfaceKind {
 const char* name_of(SurfaceKind surface);
 
 /// A run, finished or not, even while it is being written. Frames 0 … frame_count() − 1 are complete in all
-/// files; the count is taken when the reader is made.
+/// files; the count is taken when the reader is made. Bodies are numbered as in bodies(). Errors of all
+/// functions that take one: usage, if there is no such body or frame.
 class RunReader {
  public:
   /// Errors: file, if there is no run; input, if it is damaged.
@@ -78,8 +79,8 @@ class RunReader {
   const std::vector<Diagnostics>& diagnostics() const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace muslin

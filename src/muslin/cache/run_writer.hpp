@@ -59,8 +59,8 @@ class RunWriter {
   void abandon(const std::string& reason);
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace muslin

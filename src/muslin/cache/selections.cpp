@@ -42,24 +42,20 @@ Selections selections_of(const Model& model) {
   Selections selections;
   for (const Pin& pin : model.pins) {
     if (pin.vertices.empty()) continue;
-    const auto holds = [&pin](const Body& body) {
-      return pin.vertices.front() < body.first_vertex + body.vertex_count;
-    };
-    const auto body = std::find_if(model.bodies.begin(), model.bodies.end(), holds);
-    if (body->is_rigid()) continue;  // held as a whole, by its control vertices
-    Chosen chosen{pin.name, static_cast<int>(body - model.bodies.begin()), {}, pin.from, pin.until, -1};
-    for (const int v : pin.vertices) chosen.vertices.push_back(v - body->first_vertex);
+    const Body& body = model.body_of(static_cast<std::size_t>(pin.vertices.front()));
+    if (body.is_rigid()) continue;  // held as a whole, by its control vertices
+    Chosen chosen{pin.name, static_cast<int>(&body - model.bodies.data()), {}, pin.from, pin.until, -1};
+    for (const int v : pin.vertices) chosen.vertices.push_back(v - body.first_vertex);
     selections.pins.push_back(std::move(chosen));
   }
   for (std::size_t f = 0; f < model.scene.forces.size(); ++f) {
     const ForceSettings& force = model.scene.forces[f];
     if (force.type != ForceSettings::Type::point) continue;
-    const auto body = std::find_if(model.bodies.begin(), model.bodies.end(),
-                                   [&](const Body& each) { return each.name == force.body; });
-    if (body == model.bodies.end() || !force.where) continue;
-    selections.point_forces.push_back({force.name, static_cast<int>(body - model.bodies.begin()),
-                                       select_vertices(*body, *force.where, "force " + force.name),
-                                       force.from, force.until, static_cast<int>(f)});
+    if (!force.where) continue;
+    const Body& body = model.body(force.body);
+    selections.point_forces.push_back({force.name, static_cast<int>(&body - model.bodies.data()),
+                                       select_vertices(body, *force.where, "force " + force.name), force.from,
+                                       force.until, static_cast<int>(f)});
   }
   return selections;
 }

@@ -141,7 +141,11 @@ std::vector<LimitedStretch> read_stretches(const std::filesystem::path& path) {
       field = after + 1;
     }
     std::string body(field, text.c_str() + end);
-    if (body.size() > 1 && body.front() == '"') body = body.substr(1, body.size() - 2);
+    if (body.size() > 1 && body.front() == '"') {
+      body = body.substr(1, body.size() - 2);
+      for (std::size_t quote = 0; (quote = body.find("\"\"", quote)) != std::string::npos; ++quote)
+        body.erase(quote, 1);
+    }
     rows.push_back({static_cast<int>(numbers[0]), numbers[1], numbers[2], std::move(body)});
     at = end + 1;
   }

@@ -58,7 +58,7 @@ void Holds::step(std::span<const Pin> pins, double time_begin, double time_end, 
   }
 }
 
-void Holds::take_anew(std::span<const Pin> pins, double time, ConstVectors positions) {
+void Holds::reanchor(std::span<const Pin> pins, double time, ConstVectors positions) {
   if (holding.size() != pins.size()) return;
   std::size_t first = 0;
   for (std::size_t p = 0; p < pins.size(); ++p) {

@@ -37,7 +37,7 @@ struct Holds {
 
   /// Call when the vertices were set to `positions` from outside at `time`, the end of the last step: holding
   /// pins hold them there, and move them from there.
-  void take_anew(std::span<const Pin> pins, double time, ConstVectors positions);
+  void reanchor(std::span<const Pin> pins, double time, ConstVectors positions);
 };
 
 }  // namespace muslin

@@ -1,12 +1,13 @@
 #include "muslin/constraint/prescribed.hpp"
 
 #include <algorithm>
-#include <cassert>
+
+#include "muslin/core/error.hpp"
 
 namespace muslin {
 
 void Prescribed::positions(double time, Vectors x) const {
-  assert(x.size() == start.size());
+  require(x.size() == start.size(), "prescribed vertices need one position each", "give #V positions");
   if (sequence) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = placement * sequence->at(time, i);
     return;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cassert>
 
+#include "muslin/core/error.hpp"
+
 namespace muslin {
 
 Vec3 Keyed::at(double time) const {
-  assert(!keys.empty());
+  require(!keys.empty(), "a keyed quantity has no keys", "give at least one");
   const auto next =
       std::upper_bound(keys.begin(), keys.end(), time, [](double t, const Key& key) { return t < key.time; });
   if (next == keys.begin()) return keys.front().value;

@@ -1,12 +1,14 @@
 #include "muslin/geometry/point_sequence.hpp"
 
 #include <algorithm>
-#include <cassert>
+
+#include "muslin/core/error.hpp"
 
 namespace muslin {
 
 Vec3 PointSequence::at(double time, std::size_t point) const {
-  assert(!times.empty() && positions.size() == times.size() * points && point < points);
+  require(!times.empty() && positions.size() == times.size() * points && point < points,
+          "a point sequence lacks samples or has no such point", "give #points positions for each time");
   const auto next = std::upper_bound(times.begin(), times.end(), time);
   const auto sample = [&](std::size_t s) { return Vec3(positions[s * points + point].cast<double>()); };
   if (next == times.begin()) return sample(0);

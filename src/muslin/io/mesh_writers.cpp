@@ -121,10 +121,10 @@ std::string to_obj(const Mesh& mesh, ConstVectors positions) {
 }
 
 std::string to_ply(const Mesh& mesh, ConstVectors positions) {
-  std::size_t most_corners = 0;
+  std::size_t max_corners = 0;
   for (std::size_t f = 0; f < mesh.face_count(); ++f)
-    most_corners = std::max(most_corners, mesh.face(f).size());
-  const bool long_faces = most_corners > 255;
+    max_corners = std::max(max_corners, mesh.face(f).size());
+  const bool long_faces = max_corners > 255;
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                       std::to_string(positions.size()) +
                       "\nproperty double x\nproperty double y\nproperty double z\nelement face " +

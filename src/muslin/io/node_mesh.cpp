@@ -10,7 +10,7 @@ namespace muslin {
 namespace {
 
 // Far beyond any mesh that can be simulated; stops small files that instance a mesh many times.
-constexpr std::size_t most_corners = std::size_t{1} << 28;
+constexpr std::size_t max_corners = std::size_t{1} << 28;
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void NodeMesh::begin_node(const std::string& name, const Eigen::Matrix4d& transf
 
 void NodeMesh::begin_part(std::size_t positions, std::size_t uvs) {
   stored_ += positions;
-  if (stored_ > most_corners) refuse("the mesh is too large");
+  if (stored_ > max_corners) refuse("the mesh is too large");
   part_vertices_.clear();
   part_vertices_.reserve(positions);
   first_uv_ = mesh_.uvs.size();
@@ -44,7 +44,7 @@ void NodeMesh::uv(const Vec2& uv) {
 }
 
 void NodeMesh::face(std::span<const std::size_t> corners) {
-  if (mesh_.face_vertices.size() + corners.size() > most_corners) refuse("the mesh is too large");
+  if (mesh_.face_vertices.size() + corners.size() > max_corners) refuse("the mesh is too large");
   if (mesh_.face_offsets.empty()) mesh_.face_offsets.push_back(0);
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const std::size_t corner = corners[mirrored_ ? corners.size() - 1 - c : c];

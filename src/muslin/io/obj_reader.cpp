@@ -18,7 +18,7 @@ constexpr std::array ignored = {"vn",    "vp",    "s",        "usemtl",   "mtlli
                                 "con",   "bevel", "c_interp", "d_interp", "lod",    "shadow_obj", "trace_obj",
                                 "ctech", "stech", "call",     "csh",      "l"};
 
-constexpr std::size_t most_names = 256;  // on one `g` statement; bounds the memory a small file can ask for
+constexpr std::size_t max_names = 256;  // on one `g` statement; bounds the memory a small file can ask for
 
 class ObjReader {
  public:
@@ -154,8 +154,8 @@ class ObjReader {
     for (std::string_view word = scanner_.word(); !word.empty(); word = scanner_.word()) {
       const int group = identify(std::string(word), group_ids_, group_names_);
       if (std::find(active.begin(), active.end(), group) == active.end()) active.push_back(group);
-      if (active.size() > most_names)
-        scanner_.fail(word, "a group statement names more than " + std::to_string(most_names) + " groups",
+      if (active.size() > max_names)
+        scanner_.fail(word, "a group statement names more than " + std::to_string(max_names) + " groups",
                       "export the file with fewer groups");
     }
     start_run().groups = std::move(active);

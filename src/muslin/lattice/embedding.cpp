@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/lattice/rows.hpp"
 
@@ -71,7 +72,7 @@ class NearestVoxel {
 }  // namespace
 
 void Embedding::apply(ConstVectors q, Vectors points) const {
-  assert(points.size() == size());
+  require(points.size() == size(), "an embedding needs room for each of its points", "give #P vectors");
   parallel_for(size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       Vec3 sum = Vec3::Zero();
@@ -95,7 +96,7 @@ void Embedding::prepare_transpose(std::size_t vertex_count) {
 }
 
 void Embedding::add_transpose(ConstVectors f, Vectors forces_q) const {
-  assert(f.size() == size());
+  require(f.size() == size(), "an embedding needs a force for each of its points", "give #P vectors");
   if (first_.empty()) {
     for (std::size_t p = 0; p < size(); ++p)
       for (std::size_t c = 0; c < 8; ++c)

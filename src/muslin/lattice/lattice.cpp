@@ -22,7 +22,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::int64_t most_voxels = std::int64_t{1} << 30;
+constexpr std::int64_t max_voxels = std::int64_t{1} << 30;
 /// Memory of a body of many voxels while it is built, 385 measured; a run takes more.
 constexpr double bytes_per_voxel = 385;
 constexpr double least_fill = 1e-3;
@@ -72,14 +72,14 @@ VoxelKeys place_grid(const Box& bounds, const LatticeSettings& settings, const S
   int bits = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double voxels = bounds.sizes()[axis] / settings.width;
-    if (!(voxels < static_cast<double>(most_voxels))) throw_too_fine(settings.width, voxels, size);
+    if (!(voxels < static_cast<double>(max_voxels))) throw_too_fine(settings.width, voxels, size);
     extent[axis] = std::max(1, static_cast<int>(std::ceil(voxels - face_tolerance))) + 2 * margin;
     bits += std::bit_width(static_cast<unsigned>(extent[axis]));
   }
   const double w = settings.width;
   // Both sides of a sheet may pass one voxel, so half the area is the least that can be needed.
   const double count = std::max(std::abs(size.volume) / (w * w * w), 0.5 * size.area / (w * w));
-  if (count > static_cast<double>(most_voxels)) throw_too_fine(w, count, size);
+  if (count > static_cast<double>(max_voxels)) throw_too_fine(w, count, size);
   if (count * bytes_per_voxel > static_cast<double>(available_memory())) {
     throw Error(ErrorKind::input,
                 "a voxel width of " + number(w) + " m would need about " + number(count) + " voxels and " +
@@ -272,7 +272,7 @@ class Builder {
   }
 
   static void require_count(std::int64_t count) {
-    if (count > most_voxels)
+    if (count > max_voxels)
       throw Error(ErrorKind::input, "the lattice would have more than 2^30 voxels",
                   "use a larger voxel width");
   }

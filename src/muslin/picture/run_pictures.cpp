@@ -137,7 +137,7 @@ Image RunPictures::draw(int frame) {
 }
 
 Image draw_start(const Model& model, const std::vector<Crossing>& crossings) {
-  constexpr std::size_t most_balls = 500;
+  constexpr std::size_t max_balls = 500;
   const RenderOptions render = PictureOptions().render;
   SceneView scene;
   FrameView view;
@@ -160,7 +160,7 @@ Image draw_start(const Model& model, const std::vector<Crossing>& crossings) {
   Marker ball;
   ball.radius = 0.012 * bounds.diagonal().norm();
   ball.colour = Vec3(0.95, 0.1, 0.1);
-  for (std::size_t i = 0; i < std::min(crossings.size(), most_balls); ++i) {
+  for (std::size_t i = 0; i < std::min(crossings.size(), max_balls); ++i) {
     ball.position = crossings[i].at;
     view.markers.push_back(ball);
   }

@@ -11,6 +11,7 @@
 
 #include "muslin/contact/contact_candidates.hpp"
 #include "muslin/contact/contact_energy.hpp"
+#include "muslin/contact/crossings.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/material/lattice_moduli.hpp"
 
@@ -47,7 +48,7 @@ class ContactBuilder {
     if (!wanted()) return;
     if (scene_.solver.integrator == Integrator::symplectic_euler) {
       throw Error(ErrorKind::input, scene_.contact.given ? scene_.contact.place : Place{scene_.file.string()},
-                  "symplectic_euler knows no contact", "choose an implicit integrator");
+                  "symplectic_euler does not support contact", "choose an implicit integrator");
     }
     prescribed_.assign(model_.vertex_count(), 0);
     groups_.assign(model_.vertex_count(), -1);
@@ -273,9 +274,9 @@ class ContactBuilder {
   double largest_ = 0, shortest_edge_ = infinite;
 };
 
-/// Warns of bodies that contact pushes apart as soon as the run starts. Surfaces that cross or are closer
-/// than their thickness are errors of their own (find_crossings); of pairs within a body the range is smaller
-/// than the gap at rest.
+/// Warns of bodies that contact pushes apart as soon as the run starts. Bodies that cross or are closer than
+/// their thickness are left out: they are errors of their own (find_crossings). Of pairs within a body the
+/// range is smaller than the gap at rest.
 void warn_of_pressed_start(const ContactModel& contact, std::vector<std::string>& warnings) {
   if (!(contact.distance > 0)) return;
   const ContactSurface& surface = *contact.surface;
@@ -291,17 +292,19 @@ void warn_of_pressed_start(const ContactModel& contact, std::vector<std::string>
     const auto [at, is_new] = gaps.try_emplace(std::minmax(first, second), gap);
     if (!is_new) at->second = std::min(at->second, gap);
   }
-  std::erase_if(gaps, [](const auto& bodies) { return !(bodies.second > 0); });
   if (gaps.empty()) return;
-  const auto closest = std::min_element(gaps.begin(), gaps.end(), [](const auto& a, const auto& b) {
-    return a.second < b.second;
-  });
+  for (const Crossing& crossing : find_crossings(contact, contact.rest))
+    gaps.erase(std::minmax(crossing.first_body, crossing.second_body));
+  if (gaps.empty()) return;
+  const auto closest = std::min_element(gaps.begin(), gaps.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
   const auto name = [&](int body) { return contact.names[static_cast<std::size_t>(body)]; };
   std::string others;
   if (gaps.size() > 1) others = fmt::format(" (the closest of {} such pairs)", gaps.size());
   warnings.push_back(fmt::format(
-      "{} and {} start {:.3g} m apart{}, and contact, which acts within {:.3g} m, pushes them apart at once; "
-      "set `contact.distance` below the gap, or move them apart",
+      "\"{}\" and \"{}\" start with a gap of {:.3g} m{}, and contact, which acts within {:.3g} m, pushes "
+      "them apart "
+      "at once; set `contact.distance` below the gap, or move them apart",
       name(closest->first.first), name(closest->first.second), closest->second, others, contact.distance));
 }
 

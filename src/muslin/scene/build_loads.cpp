@@ -16,13 +16,6 @@
 namespace muslin {
 namespace {
 
-const Body& body_called(const Model& model, const std::string& name) {
-  const auto at = std::find_if(model.bodies.begin(), model.bodies.end(),
-                               [&](const Body& body) { return body.name == name; });
-  assert(at != model.bodies.end());
-  return *at;
-}
-
 std::vector<int> to_model(const Body& body, std::vector<int> vertices) {
   for (int& v : vertices) v += body.first_vertex;
   return vertices;
@@ -57,7 +50,7 @@ std::vector<double> shares_of_corners(const Body& body, const ForceSettings& for
 }
 
 void add_point_force(Model& model, const ForceSettings& force) {
-  const Body& body = body_called(model, force.body);
+  const Body& body = model.body(force.body);
   std::vector<int> vertices;
   std::vector<double> weights;
   if (body.is_rigid()) {
@@ -147,7 +140,7 @@ void build_forces(Model& model) {
 
 void build_pins(Model& model) {
   for (const PinSettings& settings : model.scene.pins) {
-    const Body& body = body_called(model, settings.body);
+    const Body& body = model.body(settings.body);
     Pin pin;
     pin.name = settings.name;
     pin.vertices =
@@ -164,22 +157,21 @@ void build_pins(Model& model) {
 
 void build_probes(Model& model) {
   for (const ProbeSettings& settings : model.scene.probes) {
-    const auto at = std::find_if(model.bodies.begin(), model.bodies.end(),
-                                 [&](const Body& body) { return body.name == settings.body; });
+    const Body& body = model.body(settings.body);
     Probe probe;
     probe.name = settings.name;
-    probe.body = static_cast<int>(at - model.bodies.begin());
-    if (at->is_rigid()) {
-      probe.point = embed(at->frame, std::span(&settings.at, 1));
+    probe.body = static_cast<int>(&body - model.bodies.data());
+    if (body.is_rigid()) {
+      probe.point = embed(body.frame, std::span(&settings.at, 1));
       model.probes.push_back(std::move(probe));
       continue;
     }
-    if (!at->has_lattice()) {
-      probe.point = point_of_surface(model, *at, settings);
+    if (!body.has_lattice()) {
+      probe.point = point_of_surface(model, body, settings);
       model.probes.push_back(std::move(probe));
       continue;
     }
-    probe.point = embed(at->lattice, std::span(&settings.at, 1));
+    probe.point = embed(body.lattice, std::span(&settings.at, 1));
     const auto& weights = probe.point.weights.front();
     if (*std::min_element(weights.begin(), weights.end()) < -0.01) {
       model.warnings.push_back(

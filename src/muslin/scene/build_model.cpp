@@ -11,11 +11,12 @@
 #include "muslin/scene/build_contact.hpp"
 #include "muslin/scene/build_loads.hpp"
 #include "muslin/scene/model.hpp"
+#include "muslin/scene/validate.hpp"
 
 namespace muslin {
 namespace {
 
-constexpr double most_steps = 1e6;  // of a frame
+constexpr double max_steps = 1e6;  // of a frame
 
 Progress body_progress(const Progress& whole, std::size_t index, std::size_t count) {
   Progress part;
@@ -94,7 +95,7 @@ void choose_explicit_steps(Model& model) {
   for (std::size_t b = 0; b < model.scene.bodies.size(); ++b)
     stable = std::min(stable, model.bodies[b].statistics.stable_step);
   const double steps = std::ceil(1 / (time.frame_rate * share * stable));
-  time.steps_per_frame = static_cast<int>(std::clamp(steps, 1.0, most_steps));
+  time.steps_per_frame = static_cast<int>(std::clamp(steps, 1.0, max_steps));
 }
 
 void warn_of_explicit_steps(Model& model) {
@@ -120,6 +121,7 @@ void warn_of_explicit_steps(Model& model) {
 }  // namespace
 
 Model build_model(const Scene& scene, const Progress& progress) {
+  validate(scene);
   Model model;
   model.scene = scene;
   model.warnings = scene.warnings;

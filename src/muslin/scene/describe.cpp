@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_crossings = 8;  // in a text
+constexpr std::size_t max_crossings = 8;  // in a text
 
 Json vector(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
@@ -258,11 +258,12 @@ std::string describe_text(const Model& model, std::span<const Crossing> crossing
                       steps_text(scene.time), solver_text(scene.solver));
   text += fmt::format(" (symplectic_euler would need steps below {:.3g} s)\n", stable_step(model));
   for (const std::string& warning : model.warnings) text += "warning: " + warning + "\n";
-  if (!crossings.empty()) text += counted(crossings.size(), "place", "places") + " where surfaces cross or are too close:\n";
-  for (std::size_t i = 0; i < std::min(crossings.size(), most_crossings); ++i)
+  if (!crossings.empty())
+    text += counted(crossings.size(), "place", "places") + " where surfaces cross or are too close:\n";
+  for (std::size_t i = 0; i < std::min(crossings.size(), max_crossings); ++i)
     text += "  " + describe(*model.contact, crossings[i]) + "\n";
-  if (crossings.size() > most_crossings)
-    text += fmt::format("  and {} more\n", crossings.size() - most_crossings);
+  if (crossings.size() > max_crossings)
+    text += fmt::format("  and {} more\n", crossings.size() - max_crossings);
   return text;
 }
 

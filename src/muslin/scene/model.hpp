@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "muslin/constraint/pin.hpp"
@@ -115,6 +116,11 @@ struct Model {
   std::vector<std::string> warnings;            ///< for the user, before a run
 
   std::size_t vertex_count() const { return rest_positions.size(); }
+  /// Return the body, collider or probe of that name. Errors: usage, with the nearest name.
+  const Body& body(std::string_view name) const;
+  const Probe& probe(std::string_view name) const;
+  /// Returns the body of a vertex of the model. Errors: usage, if there is no such vertex.
+  const Body& body_of(std::size_t vertex) const;
   /// Returns the body of a collider, counted among the colliders of the scene.
   const Body& collider(std::size_t index) const { return bodies[scene.bodies.size() + index]; }
   ConstVectors of(const Body& body, ConstVectors all) const {

@@ -141,10 +141,6 @@ BodyModel read_model(const TomlTable& body) {
   return model;
 }
 
-/// The stiffness of a limit grows as 1/(limit − 1) (energy/stretch_limit.hpp) without bound: a limit a
-/// rounding error above 1 asks for 1e16 times the weight of the cloth. At this one, a millimetre in a metre,
-/// it is five times that of low_stretch_limit, and the range in which it rises is still far above rounding.
-constexpr double least_stretch_limit = 1.001;
 /// Below this, products with blocks use double at usual resolutions, which is many times slower.
 constexpr double low_stretch_limit = 1.005;
 

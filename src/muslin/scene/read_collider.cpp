@@ -86,7 +86,7 @@ void read_sequence(const TomlTable& table, ColliderSettings& collider) {
   collider.sequence = read_path(table, "sequence");
   collider.sequence_place = table.place("sequence");
   if (table.has("frame_rate") && collider.sequence.ends_with(".mdd"))
-    throw table.error("frame_rate", "an .mdd has times of its own", "take `frame_rate` out");
+    throw table.error("frame_rate", "an .mdd stores its own frame times", "take `frame_rate` out");
   if (table.has("frame_rate")) collider.frame_rate = table.number("frame_rate", "1/s", {1e-6, 1e6, false});
   if (table.has("start")) collider.start = table.number("start", "s", {-1e9, 1e9, false});
 }

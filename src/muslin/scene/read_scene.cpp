@@ -21,8 +21,8 @@
 namespace muslin {
 namespace {
 
-constexpr double most_frames = 1e6;
-constexpr int most_steps = 1'000'000;  // of a frame
+constexpr double max_frames = 1e6;
+constexpr int max_steps = 1'000'000;  // of a frame
 
 /// None: "auto".
 std::optional<int> read_steps(const TomlTable& table) {
@@ -30,9 +30,9 @@ std::optional<int> read_steps(const TomlTable& table) {
   const TomlValue* value = table.find(key);
   if (value == nullptr) return std::nullopt;
   if (value->type == TomlValue::Type::string && value->string == "auto") return std::nullopt;
-  if (value->type != TomlValue::Type::integer || value->integer < 1 || value->integer > most_steps) {
+  if (value->type != TomlValue::Type::integer || value->integer < 1 || value->integer > max_steps) {
     throw table.error(key, "`steps_per_frame` is neither \"auto\" nor a number of steps",
-                      fmt::format("write \"auto\" or a whole number from 1 to {}", most_steps));
+                      fmt::format("write \"auto\" or a whole number from 1 to {}", max_steps));
   }
   return static_cast<int>(value->integer);
 }
@@ -44,7 +44,7 @@ TimeSettings read_time(const TomlTable& top) {
   time.duration = table->number("duration", "s", {0, 1e9, true}, time.duration);
   time.frame_rate = table->number("frame_rate", "1/s", {1e-6, 1e6, false}, time.frame_rate);
   time.steps_per_frame = read_steps(*table);
-  if (time.duration * time.frame_rate > most_frames) {
+  if (time.duration * time.frame_rate > max_frames) {
     throw table->error("duration",
                        fmt::format("{} s at {} frames per second are more than a million frames",
                                    time.duration, time.frame_rate),
@@ -62,19 +62,23 @@ void warn_of_unused(const TomlTable& table, const SolverSettings& solver, const 
   const std::string& name = name_of(integrator_names(), integrator);
   const auto warn = [&](const char* key, const std::string& effect, const std::string& remedy) {
     if (table.has(key))
-      warnings.push_back(fmt::format("[solver] `{}` has no effect on {}: take it out, {}", key, effect, remedy));
+      warnings.push_back(
+          fmt::format("[solver] `{}` has no effect on {}: take it out, {}", key, effect, remedy));
   };
   if (!linear) warn("linear_tolerance", name, "or choose `integrator = \"linearly_implicit_euler\"`");
   if (newton) return;
   const std::string choose = "or choose `integrator = \"implicit_euler\"` or `\"bdf2\"`";
   warn("tolerance", name, choose);
   if (!linear) warn("effort", name, choose);
-  // Automatic steps are longer for drafts with any integrator.
+  // Of linearly_implicit_euler an effort sets the automatic steps alone: those of drafts are longer.
   if (linear && time.steps_per_frame)
     warn("effort", name + " with a number of `steps_per_frame`", "set `steps_per_frame = \"auto\"`, " + choose);
+  if (linear && !time.steps_per_frame && solver.effort == Effort::exact)
+    warn("effort", name + " but for drafts", choose);
 }
 
-SolverSettings read_solver(const TomlTable& top, const TimeSettings& time, std::vector<std::string>& warnings) {
+SolverSettings read_solver(const TomlTable& top, const TimeSettings& time,
+                           std::vector<std::string>& warnings) {
   SolverSettings solver;
   const auto table = top.table("solver", known_keys("solver"));
   if (!table) return solver;

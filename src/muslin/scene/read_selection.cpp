@@ -56,7 +56,7 @@ Selection read_selection(const TomlTable& owner) {
   const auto where = owner.table("where", known_keys("where"));
   const std::string criteria = "give one or more of " + name_list(known_keys("where"));
   if (!where) throw owner.error("where", owner.title() + " has no `where`", criteria);
-  if (where->size() == 0) throw owner.error("where", "`where` selects by nothing", criteria);
+  if (where->size() == 0) throw owner.error("where", "`where` is empty", criteria);
   Selection selection;
   selection.place = where->place();
   if (where->has("group")) selection.group = where->string("group");

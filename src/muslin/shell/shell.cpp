@@ -1,7 +1,6 @@
 #include "muslin/shell/shell.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <tuple>
 
@@ -29,7 +28,8 @@ class ShellBuilder {
  public:
   ShellBuilder(const Mesh& mesh, ConstVectors rest, const Weave& weave)
       : mesh_(mesh), rest_(rest), weave_(weave) {
-    assert(rest.size() == mesh.vertex_count());
+    require(rest.size() == mesh.vertex_count(), "a rest shape has another number of vertices than its mesh",
+            "give one position for each");
   }
 
   Shell build() {

@@ -23,7 +23,7 @@ struct Preamble {
 
 [[noreturn]] void damaged(const std::string& how) {
   throw Error(ErrorKind::input, "the checkpoint is damaged: " + how,
-              "resume from an earlier checkpoint or start the run anew");
+              "resume from an earlier checkpoint or restart the run");
 }
 
 /// Takes values off the front of `rest`.
@@ -58,7 +58,7 @@ CheckpointHeader read_checkpoint_header(std::span<const std::uint8_t> bytes) {
     throw Error(ErrorKind::input,
                 "the checkpoint has format " + std::to_string(preamble.version) + ", this muslin reads " +
                     std::to_string(version),
-                "resume with the version that wrote it, or start the run anew");
+                "resume with the version that wrote it, or restart the run");
   }
   std::uint64_t checksum = 0;
   const std::size_t body = bytes.size() - sizeof checksum;
@@ -139,7 +139,7 @@ void CheckpointReader::finish() const {
     if (record.read) continue;
     throw Error(ErrorKind::input,
                 fmt::format("the checkpoint has \"{}\", which this muslin does not know", name),
-                "resume with the version that wrote it, or start the run anew");
+                "resume with the version that wrote it, or restart the run");
   }
 }
 

@@ -7,8 +7,6 @@
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
-namespace {
-
 double max_stretch(const Body& body, ConstVectors x) {
   if (body.is_shell()) return max_stretch(body.shell, x);
   const Springs& springs = body.springs;
@@ -37,8 +35,6 @@ double max_stretch(const Body& body, ConstVectors x) {
                       })
       .ratio;
 }
-
-}  // namespace
 
 double max_stretch(const Model& model, ConstVectors x) {
   double largest = model.bodies.empty() ? 1 : 0;

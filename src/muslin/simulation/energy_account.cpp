@@ -63,7 +63,7 @@ EnergyFlow energy_flow(const SolvedStep& step) {
   }
 
   const bool all_euler = step.integrator != Integrator::bdf2;
-  const std::vector<std::uint8_t>& turned = step.context->turned;
+  const std::vector<std::uint8_t>& rigidly_rotated = step.context->rigidly_rotated;
   const double tau = step.context->dt;
   struct Sums {
     double loss = 0, reaction = 0, residual = 0;
@@ -77,7 +77,7 @@ EnergyFlow energy_flow(const SolvedStep& step) {
       const Vec3& v0 = before.velocities[v];
       const Vec3& v1 = after.velocities[v];
       // A turning body's velocities are no differences of positions.
-      const bool euler = all_euler && (turned.empty() || turned[v] == 0);
+      const bool euler = all_euler && (rigidly_rotated.empty() || rigidly_rotated[v] == 0);
       // The prediction of symplectic Euler is of use only to loads; its inertia is that of its velocities.
       const Vec3 acceleration =
           euler ? Vec3((v1 - v0) / step.length)

@@ -61,11 +61,11 @@ void EnergyLedger::enter(const Terms& acting, SolvedStep step,
     acts.push_back({role, loads[i].get(), stored[slot]});
     slots.push_back(slot);
   }
-  if (contact) acts.push_back({EnergyRole::elastic, contact, pressed, contact->parts(after).normal});
+  if (contact) acts.push_back({EnergyRole::elastic, contact, contact_energy, contact->parts(after).normal});
   step.acts = acts;
   const EnergyFlow flow = energy_flow(step);
   for (std::size_t k = 0; k < slots.size(); ++k) stored[slots[k]] = flow.stored[k];
-  if (contact) pressed = flow.stored.back();
+  if (contact) contact_energy = flow.stored.back();
   work += flow.work;
   dissipated += flow.dissipated;
   unbalanced += flow.unbalanced;

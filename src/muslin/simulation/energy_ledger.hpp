@@ -36,7 +36,7 @@ struct Terms {
 struct EnergyLedger {
   double work = 0, dissipated = 0;   ///< since the start [J]
   double unbalanced = 0;             ///< since the start [J]
-  double pressed = 0;                ///< energy of contact [J]
+  double contact_energy = 0;         ///< [J]
   std::vector<std::uint64_t> terms;  ///< which `stored` is about, by Terms::keys
   std::vector<double> stored;        ///< of each of these, 0 where its role is not to store [J]
 
@@ -45,7 +45,7 @@ struct EnergyLedger {
     arrays("energy.work", self.work);
     arrays("energy.dissipated", self.dissipated);
     arrays("energy.unbalanced", self.unbalanced);
-    arrays("energy.pressed", self.pressed);
+    arrays("energy.pressed", self.contact_energy);
     arrays("energy.terms", self.terms);
     arrays("energy.stored", self.stored);
   }
@@ -57,7 +57,7 @@ struct EnergyLedger {
   void measure(const Terms& acting, const StepContext& context, ConstVectors positions);
 
   /// Enters a step; `step.acts` are filled in here. `loads`: what the loads amounted to in it. `contact`:
-  /// what pressed surfaces apart, null if nothing can touch.
+  /// the potential of contact, null if nothing can touch.
   void enter(const Terms& acting, SolvedStep step, std::span<const std::unique_ptr<Potential>> loads,
              const ContactPotential* contact);
 

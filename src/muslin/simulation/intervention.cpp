@@ -28,7 +28,7 @@ void Simulation::Impl::keep_prescribed(ConstVectors from, Vectors to) const {
 
 void Simulation::Impl::put(State changed) {
   const auto energy = [&] {
-    double sum = kinetic_energy(model->masses, state.motion.velocities) + state.energy.pressed;
+    double sum = kinetic_energy(model->masses, state.motion.velocities) + state.energy.contact_energy;
     for (const double stored : state.energy.stored) sum += stored;
     return sum;
   };
@@ -39,7 +39,7 @@ void Simulation::Impl::put(State changed) {
   state.motion.previous_velocities.clear();
   state.motion.previous_dt = 0;
   if (moved) {
-    state.holds.take_anew(model->pins, state.motion.time, state.motion.positions);
+    state.holds.reanchor(model->pins, state.motion.time, state.motion.positions);
     if (model->contact) touch();
   }
   measure_energy();

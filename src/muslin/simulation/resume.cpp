@@ -24,7 +24,7 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   if (header.fingerprint != model_fingerprint(model)) {
     throw Error(ErrorKind::input,
                 "the checkpoint belongs to other bodies: a mesh, a lattice or a material changed",
-                "undo the change, or start the run anew");
+                "undo the change, or restart the run");
   }
   const std::int64_t steps = impl.time().steps_per_frame.value_or(0);
   if (header.steps != 0 && header.steps_per_frame != steps) {
@@ -42,7 +42,7 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
     require_fit(state.contact, *model.contact);
   } else {
     state.contact = {};
-    state.energy.work -= std::exchange(state.energy.pressed, 0.0);
+    state.energy.work -= std::exchange(state.energy.contact_energy, 0.0);
   }
   go_on_with(model.pins, state);
   state.energy.go_on_with(impl.terms(), state.motion.positions);
@@ -51,7 +51,7 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   impl.state = std::move(state);
   impl.wall_ms = 0;
   if (model.contact && impl.options.allow_tangled)
-    impl.scratch.guard(model, impl.state)->leave_tangled(impl.state.motion.positions);
+    impl.scratch.guard(model, impl.state)->allow_initial_intersections(impl.state.motion.positions);
 }
 
 }  // namespace muslin

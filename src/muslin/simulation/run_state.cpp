@@ -36,7 +36,7 @@ RunState from_checkpoint(std::span<const std::uint8_t> bytes, std::size_t vertic
   };
   if (motion.positions.size() != vertices || motion.velocities.size() != vertices ||
       !fits(motion.previous_positions) || !fits(motion.previous_velocities)) {
-    throw Error(ErrorKind::input, "the checkpoint has another number of vertices", "start the run anew");
+    throw Error(ErrorKind::input, "the checkpoint has another number of vertices", "restart the run");
   }
   return state;
 }

@@ -13,15 +13,25 @@
 
 namespace muslin {
 
+namespace {
+
+std::shared_ptr<const Model> not_null(std::shared_ptr<const Model> model) {
+  require(model != nullptr, "a simulation needs a model, and got none",
+          "give the one that build_model returns");
+  return model;
+}
+
+}  // namespace
+
 Simulation::Impl::Impl(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options)
-    : model(std::move(the_model)), options(the_options), loads(model->loads) {
+    : model(not_null(std::move(the_model))), options(the_options), loads(model->loads) {
   state.motion.positions = model->rest_positions;
   state.motion.velocities = model->velocities;
   state.motion.velocities.resize(model->vertex_count(), Vec3::Zero());
   state.pins = pin_keys(model->pins);
   if (model->contact) {
     if (model->scene.solver.integrator == Integrator::symplectic_euler)
-      throw Error(ErrorKind::usage, "symplectic_euler does not work with contact",
+      throw Error(ErrorKind::usage, "symplectic_euler does not support contact",
                   "use implicit_euler, bdf2 or linearly_implicit_euler");
     require_untangled(state.motion.positions);
     touch();
@@ -70,11 +80,11 @@ void Simulation::Impl::touch() {
   state.contact = {};
   ContactGuard& guard = *scratch.guard(*model, state);
   const std::vector<Vec3>& x = state.motion.positions;
-  if (options.allow_tangled) guard.leave_tangled(x);
+  if (options.allow_tangled) guard.allow_initial_intersections(x);
   guard.begin(x, scratch.fixed);
   guard.potential(x, StepGuard::Friction::anew);
   guard.end(x);
-  state.energy.pressed = guard.last_potential().parts(x).normal;
+  state.energy.contact_energy = guard.last_potential().parts(x).normal;
 }
 
 void Simulation::Impl::measure_energy() {
@@ -119,7 +129,7 @@ void Simulation::Impl::advance() {
 void Simulation::Impl::describe_state(Diagnostics& row) const {
   const EnergyLedger& energy = state.energy;
   row.kinetic = kinetic_energy(model->masses, state.motion.velocities);
-  row.elastic = energy.sum(terms(), EnergyRole::elastic) + energy.pressed;
+  row.elastic = energy.sum(terms(), EnergyRole::elastic) + energy.contact_energy;
   row.potential = energy.sum(terms(), EnergyRole::potential);
   row.work = energy.work;
   row.dissipated = energy.dissipated;
@@ -152,13 +162,9 @@ void Simulation::Impl::fail(const StepReport& report) const {
   std::string place;
   if (report.worst_vertex >= 0) {
     const Vec3& x = state.motion.positions[static_cast<std::size_t>(report.worst_vertex)];
-    for (const Body& body : model->bodies) {
-      const int local = report.worst_vertex - body.first_vertex;
-      if (local >= 0 && local < body.vertex_count)
-        place = fmt::format(", worst in body \"{}\" near ({:.4g}, {:.4g}, {:.4g}) m", body.name, x.x(), x.y(),
-                            x.z());
-    }
-    if (place.empty()) place = fmt::format(", worst near ({:.4g}, {:.4g}, {:.4g}) m", x.x(), x.y(), x.z());
+    place =
+        fmt::format(", worst in body \"{}\" near ({:.4g}, {:.4g}, {:.4g}) m",
+                    model->body_of(static_cast<std::size_t>(report.worst_vertex)).name, x.x(), x.y(), x.z());
   }
   const bool explicit_steps = model->scene.solver.integrator == Integrator::symplectic_euler;
   throw Error(ErrorKind::solver,
@@ -199,7 +205,19 @@ void Simulation::advance(const Progress& progress) {
   }
 }
 
+SimulatedBody Simulation::body(const std::string& name) { return {*this, model().body(name)}; }
+
+Vec3 Simulation::probe(const std::string& name) const {
+  const Probe& probe = model().probe(name);
+  const Body& body = model().bodies[static_cast<std::size_t>(probe.body)];
+  Vec3 point;
+  probe.point.apply(model().of(body, state().positions), {&point, 1});
+  return point;
+}
+
 void Simulation::add_load(LoadTerm load) {
+  if (!load.load)
+    throw Error(ErrorKind::usage, "the load \"" + load.name + "\" is null", "give one that exists");
   impl_->loads.push_back(std::move(load));
   impl_->state.energy.stored.push_back(0.0);
   impl_->state.energy.terms = impl_->terms().keys();

@@ -11,6 +11,7 @@
 #include "muslin/potential/state.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/simulation/diagnostics.hpp"
+#include "muslin/simulation/simulated_body.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
@@ -36,6 +37,10 @@ class Simulation {
   const Diagnostics& diagnostics() const;  ///< of the last finished frame
   std::size_t tangled() const;             ///< pairs of triangles that cross still, where that is allowed
   RunCosts costs() const;
+  /// Returns the body or collider of that name. Errors: usage, with the nearest name.
+  SimulatedBody body(const std::string& name);
+  /// Returns where the probe of that name is [m]. Errors: usage, with the nearest name.
+  Vec3 probe(const std::string& name) const;
 
   /// Advances to the end of the next frame. A step that fails is halved, up to 8 times; if that fails too,
   /// throws Error(solver) with frame, time, place and what to change, and the state is that of the last good
@@ -46,7 +51,8 @@ class Simulation {
   void step();
 
   /// Loads besides those of the model, in the energy balance by their role. They may depend on what changes
-  /// outside, so they are no part of checkpoints: add them again before restore().
+  /// outside, so they are no part of checkpoints: add them again before restore(). Errors: usage, if it is
+  /// null.
   void add_load(LoadTerm load);
 
   /// Puts all vertices (#V by 3 [m]) somewhere else, as one would by hand: velocities stay, BDF2 starts anew,

@@ -13,7 +13,7 @@ constexpr double acceleration_share = 3.5e-4, draft_longer = 4;
 constexpr double edges_past = 4;
 /// Iterations from which on a step is hard, and up to which it is easy.
 constexpr int hard = 24, easy = 12;
-constexpr int most_harder = 2;
+constexpr int max_harder = 2;
 /// What is squeezed by what moves anyway would ask for shorter steps without end.
 constexpr int finest = 6;
 
@@ -63,7 +63,7 @@ int StepControl::choose(const ModelParts& parts, std::span<const double> acceler
 void StepControl::note(int chosen, const StepReport& report) {
   level = chosen;
   if (!report.converged || report.newton_iterations >= hard) {
-    harder = std::min(harder + 1, most_harder);
+    harder = std::min(harder + 1, max_harder);
   } else if (report.newton_iterations <= easy) {
     harder = std::max(harder - 1, 0);
   }

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_pinned_points = 400;  ///< drawn of one pin
+constexpr std::size_t max_pinned_points = 400;  ///< drawn of one pin
 
 Json triple(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
@@ -120,7 +120,7 @@ class Gatherer {
   /// Adds a track of the vertices of a pin or force; evenly thinned if there are very many.
   int add_chosen(const Chosen& chosen) {
     std::vector<int> vertices;
-    const std::size_t stride = (chosen.vertices.size() + most_pinned_points - 1) / most_pinned_points;
+    const std::size_t stride = (chosen.vertices.size() + max_pinned_points - 1) / max_pinned_points;
     for (std::size_t i = 0; i < chosen.vertices.size(); i += stride) vertices.push_back(chosen.vertices[i]);
     const bool lattice = run_.has_lattice(chosen.body);
     const std::size_t cached = lattice ? run_.lattice(chosen.body).rest_positions.size()

@@ -1,0 +1,46 @@
+// SimulatedBody is one body or collider of a running simulation, found by its name: its motion, its stretch,
+// and forces and energies of a program's own.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/force/force_function.hpp"
+#include "muslin/potential/potential.hpp"
+#include "muslin/scene/model.hpp"
+
+namespace muslin {
+
+class Simulation;
+
+/// A reference: valid as long as the simulation lives and is not moved.
+class SimulatedBody {
+ public:
+  const std::string& name() const { return body_->name; }
+  /// Return its vertices, #V by 3, [m] and [m/s]: the nodes of a lattice, the vertices of a shell's or a
+  /// moving collider's mesh, the four corners of a rigid body's frame. Valid until the simulation goes on.
+  ConstVectors positions() const;
+  ConstVectors velocities() const;
+  /// Returns where the vertices of its mesh are, in their order, #P by 3 [m].
+  std::vector<Vec3> points() const;
+  /// Returns the largest length of an edge or, in any direction, of a triangle, over its length at rest.
+  double stretch() const;
+
+  /// Adds a force on each of its vertices, as ForceFunction computes it; its spans are of this body. The work
+  /// it does is in the energy balance. Not part of checkpoints: add it again before restore().
+  void add_force(const std::string& name, ForceFunction::Function force);
+  /// Adds an energy of its vertices, handled implicitly like those of muslin; `role` places it in the
+  /// balance. Not part of checkpoints. Errors: usage, if it is null.
+  void add_potential(const std::string& name, EnergyRole role, std::shared_ptr<const Potential> potential);
+
+ private:
+  friend class Simulation;
+  SimulatedBody(Simulation& simulation, const Body& body) : simulation_(&simulation), body_(&body) {}
+
+  Simulation* simulation_;
+  const Body* body_;
+};
+
+}  // namespace muslin
