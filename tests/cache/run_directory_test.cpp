@@ -126,11 +126,15 @@ TEST(RunQuality, WarnsOfLimitsOfStretchThatWereMissed) {
   EXPECT_THAT(
       warnings_of(quality),
       testing::ElementsAre(
-          testing::AllOf(HasSubstr("stretched to 1.15 of its length, beyond its `stretch_limit` of 1.1"),
-                         HasSubstr("in frame 1;")),
-          testing::AllOf(HasSubstr("body hem: the fabric was stretched to 3.3 of its length, beyond its "
-                                   "`stretch_limit` of 1.05, in frames 2 to 4 and 7; pins"),
+          testing::AllOf(HasSubstr("up to 1.15 times as long as at rest, beyond its `stretch_limit` of 1.1"),
+                         HasSubstr("at the end of frame 1; ")),
+          testing::AllOf(HasSubstr("body hem: a triangle was up to 3.3 times as long as at rest, beyond its "
+                                   "`stretch_limit` of 1.05, at the end of frames 2 to 4 and 7; move pins"),
                          HasSubstr("raise `stretch_limit`"))));
+  RunQuality from_start;
+  from_start.add(LimitedStretch{0, 1.3, 1.05, "hem"});
+  EXPECT_THAT(warnings_of(from_start),
+              testing::ElementsAre(HasSubstr("it starts beyond the limit: check `rest_mesh`")));
 }
 
 TEST(RunDirectory, GoesOnWithATableOfAnEarlierVersion) {

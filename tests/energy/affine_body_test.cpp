@@ -8,6 +8,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/affine_frame.hpp"
+#include "muslin/potential/linearization.hpp"
 
 namespace muslin {
 namespace {

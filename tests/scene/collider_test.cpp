@@ -358,12 +358,19 @@ TEST_F(ColliderModel, AStartWithinTheContactDistanceIsAWarning) {
                            "[[collider]]\nname = 'floor'\nshape = 'plane'\ncenter = [0, -0.002, 0]\n"
                            "[[collider]]\nname = 'ball'\nshape = 'sphere'\ncenter = [0.4, 0.103, 0.4]\n"
                            "radius = 0.1\n[contact]\ndistance = ";
-  EXPECT_THAT(build(near + "0.01\n").warnings,
-              testing::ElementsAre(testing::AllOf(
-                  HasSubstr("cloth and floor start 0.001 m apart (the closest of 2 such pairs)"),
-                  HasSubstr("within 0.01 m"), HasSubstr("set `contact.distance` below the gap"))));
-  EXPECT_THAT(build(near + "0.0015\n").warnings, testing::ElementsAre(HasSubstr("start 0.001 m apart, and")));
+  EXPECT_THAT(
+      build(near + "0.01\n").warnings,
+      testing::ElementsAre(testing::AllOf(
+          HasSubstr("\"cloth\" and \"floor\" start with a gap of 0.001 m (the closest of 2 such pairs)"),
+          HasSubstr("within 0.01 m"), HasSubstr("set `contact.distance` below the gap"))));
+  EXPECT_THAT(build(near + "0.0015\n").warnings,
+              testing::ElementsAre(HasSubstr("start with a gap of 0.001 m, and")));
   EXPECT_THAT(build(near + "0.001\n").warnings, testing::IsEmpty());
+  // Bodies that cross are errors of their own: advice on the distance would mislead.
+  const std::string crossing = sheet +
+                               "[[collider]]\nname = 'box'\nshape = 'box'\ncenter = [0.4, 0, 0.3]\n"
+                               "size = [0.1, 0.1, 0.1]\n[contact]\ndistance = 0.06\n";
+  EXPECT_THAT(build(crossing).warnings, testing::Not(testing::Contains(HasSubstr("start with a gap"))));
   // It is about pairs of bodies: a sheet is not too close to itself.
   EXPECT_THAT(build(sheet + "[contact]\ndistance = 1\n").warnings, testing::IsEmpty());
 }

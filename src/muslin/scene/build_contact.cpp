@@ -277,7 +277,8 @@ class ContactBuilder {
 /// Warns of bodies that contact pushes apart as soon as the run starts. Bodies that cross or are closer than
 /// their thickness are left out: they are errors of their own (find_crossings). Of pairs within a body the
 /// range is smaller than the gap at rest.
-void warn_of_pressed_start(const ContactModel& contact, std::vector<std::string>& warnings) {
+void warn_of_pressed_start(Model& model) {
+  const ContactModel& contact = *model.contact;
   if (!(contact.distance > 0)) return;
   const ContactSurface& surface = *contact.surface;
   ContactCandidates candidates(contact.surface, contact.rest, contact.distance);
@@ -293,7 +294,7 @@ void warn_of_pressed_start(const ContactModel& contact, std::vector<std::string>
     if (!is_new) at->second = std::min(at->second, gap);
   }
   if (gaps.empty()) return;
-  for (const Crossing& crossing : find_crossings(contact, contact.rest))
+  for (const Crossing& crossing : find_crossings(contact, model.rest_positions))
     gaps.erase(std::minmax(crossing.first_body, crossing.second_body));
   if (gaps.empty()) return;
   const auto closest = std::min_element(gaps.begin(), gaps.end(),
@@ -301,10 +302,9 @@ void warn_of_pressed_start(const ContactModel& contact, std::vector<std::string>
   const auto name = [&](int body) { return contact.names[static_cast<std::size_t>(body)]; };
   std::string others;
   if (gaps.size() > 1) others = fmt::format(" (the closest of {} such pairs)", gaps.size());
-  warnings.push_back(fmt::format(
+  model.warnings.push_back(fmt::format(
       "\"{}\" and \"{}\" start with a gap of {:.3g} m{}, and contact, which acts within {:.3g} m, pushes "
-      "them apart "
-      "at once; set `contact.distance` below the gap, or move them apart",
+      "them apart at once; set `contact.distance` below the gap, or move them apart",
       name(closest->first.first), name(closest->first.second), closest->second, others, contact.distance));
 }
 
@@ -312,7 +312,7 @@ void warn_of_pressed_start(const ContactModel& contact, std::vector<std::string>
 
 void build_contact(Model& model) {
   ContactBuilder(model).build();
-  if (model.contact) warn_of_pressed_start(*model.contact, model.warnings);
+  if (model.contact) warn_of_pressed_start(model);
 }
 
 }  // namespace muslin

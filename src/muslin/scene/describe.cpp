@@ -256,7 +256,9 @@ std::string describe_text(const Model& model, std::span<const Crossing> crossing
   text += counted(scene.forces.size(), "force") + ", " + counted(scene.probes.size(), "probe") + "\n";
   text += fmt::format("{:.6g} s in {} frames, {} by {}", scene.time.duration, scene.time.frames(),
                       steps_text(scene.time), solver_text(scene.solver));
-  text += fmt::format(" (symplectic_euler would need steps below {:.3g} s)\n", stable_step(model));
+  const double stable = stable_step(model);  // infinite without springs
+  text += std::isfinite(stable) ? fmt::format(" (symplectic_euler would need steps below {:.3g} s)\n", stable)
+                                : "\n";
   for (const std::string& warning : model.warnings) text += "warning: " + warning + "\n";
   if (!crossings.empty())
     text += counted(crossings.size(), "place", "places") + " where surfaces cross or are too close:\n";
