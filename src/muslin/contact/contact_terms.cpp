@@ -128,7 +128,7 @@ class Patch {
   }
 
  private:
-  /// What the triangles of the patch have in common at an edge or a corner.
+  /// The triangles of the patch that share an edge or a corner: their number, smallest thickness and range.
   struct Feature {
     int triangles = 0;
     double thickness = std::numeric_limits<double>::infinity(), range = thickness;

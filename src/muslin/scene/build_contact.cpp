@@ -27,7 +27,7 @@ constexpr double stiffness_share = 0.15;
 /// With the least stiffness this share of its points carries the body's weight at half the range.
 constexpr double carrying_share = 0.1, gravity = 9.81;
 constexpr double floor_share = 0.005;       // of the gap floor, in d̂
-/// What rests on something has a gap of a little less than d̂; below this share of it, it is pressed.
+/// Bodies at rest have a gap of a little less than d̂. Below this share of it contact pushes them apart.
 constexpr double pressed_share = 0.9;
 
 double lattice_stiffness(const Body& body, const BodySettings& settings) {

@@ -70,7 +70,7 @@ void warn_of_unused(const TomlTable& table, const SolverSettings& solver, const 
   const std::string choose = "or choose `integrator = \"implicit_euler\"` or `\"bdf2\"`";
   warn("tolerance", name, choose);
   if (!linear) warn("effort", name, choose);
-  // Of linearly_implicit_euler an effort sets the automatic steps alone: those of drafts are longer.
+  // With linearly_implicit_euler an effort has one effect: automatic steps of drafts are longer.
   if (linear && time.steps_per_frame)
     warn("effort", name + " with a number of `steps_per_frame`", "set `steps_per_frame = \"auto\"`, " + choose);
   if (linear && !time.steps_per_frame && solver.effort == Effort::exact)
