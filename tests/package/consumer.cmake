@@ -16,3 +16,13 @@ run(${SCRATCH}/build/consumer ${SCRATCH}/prefix/share/muslin/scenes/thesis/1_res
 if(NOT output MATCHES "24 10\\.000000 0\\.000000 0\\.000000")
   message(FATAL_ERROR "the consumer's flag did not stay at rest:\n${output}")
 endif()
+
+# The guide shows the same program.
+file(READ ${SOURCE}/examples/consumer/main.cpp program)
+file(READ ${SOURCE}/docs/guide/cpp.md guide)
+string(FIND "${program}" "#include" begin)
+string(SUBSTRING "${program}" ${begin} -1 program)
+string(FIND "${guide}" "${program}" at)
+if(at LESS 0)
+  message(FATAL_ERROR "docs/guide/cpp.md does not show examples/consumer/main.cpp")
+endif()
