@@ -1,7 +1,6 @@
 #include "muslin/scene/build_loads.hpp"
 
 #include <algorithm>
-#include <cassert>
 
 #include <fmt/format.h>
 
