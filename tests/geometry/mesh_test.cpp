@@ -183,5 +183,26 @@ TEST(Triangulate, HugePolygonsTakeNoQuadraticTime) {
   EXPECT_LT(took.count(), 10) << "seconds";  // quadratic: minutes
 }
 
+TEST(CutMesh, KeepsFacesTextureAndGroups) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}};
+  mesh.add_face(std::array{0, 1, 4, 3});
+  mesh.add_face(std::array{1, 2, 5, 4});
+  mesh.uvs = {{0, 0}, {0.5, 0}, {1, 0}, {0, 1}, {0.5, 1}, {1, 1}};
+  mesh.corner_uvs = {0, 1, 4, 3, 1, 2, 5, 4};
+  mesh.groups = {{"top", {}, {3, 4, 5}}, {"right", {1}, {1, 2, 4, 5}}};
+
+  const MeshCut halves = cut(mesh, std::vector<std::array<int, 2>>{{1, 4}});
+  EXPECT_EQ(halves.origins, (std::vector<int>{0, 1, 2, 3, 4, 5, 1, 4}));
+  EXPECT_EQ(halves.mesh.face_vertices, (std::vector<int>{0, 1, 4, 3, 6, 2, 5, 7}));
+  EXPECT_EQ(halves.mesh.version, 1);
+  EXPECT_EQ(halves.mesh.corner_uvs, mesh.corner_uvs);
+  ASSERT_EQ(halves.mesh.vertex_count(), 8u);
+  EXPECT_EQ(halves.mesh.positions[6], mesh.positions[1]);
+  EXPECT_EQ(halves.mesh.positions[7], mesh.positions[4]);
+  EXPECT_EQ(halves.mesh.groups[0].vertices, (std::vector<int>{3, 4, 5, 7}));
+  EXPECT_EQ(halves.mesh.groups[1].vertices, (std::vector<int>{1, 2, 4, 5, 6, 7}));
+}
+
 }  // namespace
 }  // namespace muslin

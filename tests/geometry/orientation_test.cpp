@@ -89,7 +89,7 @@ TEST(Patches, AMoebiusStripIsNotOrientable) {
     const bool last = i + 1 == n;
     mesh.add_face(std::array{v, v + 1, last ? w : w + 1, last ? w + 1 : w});
   }
-  const Patches patches = find_patches(edge_uses(mesh.face_offsets, mesh.face_vertices), mesh.face_count());
+  const Patches patches = find_patches(edge_uses(mesh), mesh.face_count());
   ASSERT_EQ(patches.orientable.size(), 1u);
   EXPECT_FALSE(patches.orientable[0]);
 }

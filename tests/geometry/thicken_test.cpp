@@ -16,7 +16,7 @@ namespace {
 // Every edge is run once each way by the same number of faces.
 bool closed_and_consistent(const Mesh& mesh) {
   bool good = true;
-  for_each_edge(edge_uses(mesh.face_offsets, mesh.face_vertices), [&](std::span<const EdgeUse> edge) {
+  for_each_edge(edge_uses(mesh), [&](std::span<const EdgeUse> edge) {
     int balance = 0;
     for (const EdgeUse& use : edge) balance += use.ascends ? 1 : -1;
     good = good && balance == 0;

@@ -10,10 +10,10 @@
 namespace {
 
 const std::map<std::string, int> ranks = {
-    {"core", 0},       {"geometry", 1}, {"potential", 1}, {"field", 2},   {"io", 2},
-    {"lattice", 3},    {"shell", 3},    {"material", 4},  {"energy", 4},  {"force", 4},
-    {"constraint", 4}, {"contact", 4},  {"surface", 4},   {"solver", 4},  {"scene", 5},
-    {"simulation", 6}, {"cache", 7},    {"render", 7},    {"picture", 8}, {"view", 8},
+    {"core", 0},    {"topology", 1}, {"geometry", 2}, {"potential", 2}, {"field", 3},      {"io", 3},
+    {"lattice", 4}, {"shell", 4},    {"material", 5}, {"energy", 5},    {"force", 5},      {"constraint", 5},
+    {"contact", 5}, {"surface", 5},  {"solver", 5},   {"scene", 6},     {"simulation", 7}, {"cache", 8},
+    {"render", 8},  {"picture", 9},  {"view", 9},
 };
 
 bool allowed(const std::string& from, const std::string& to) {

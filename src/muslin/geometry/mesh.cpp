@@ -1,5 +1,8 @@
 #include "muslin/geometry/mesh.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/geometry/ear_clipping.hpp"
@@ -22,6 +25,21 @@ Box Mesh::bounds() const {
     for (const Vec3& position : positions) box.extend(position);
   for (const int vertex : face_vertices) box.extend(positions[static_cast<std::size_t>(vertex)]);
   return box;
+}
+
+MeshCut cut(const Mesh& mesh, std::span<const std::array<int, 2>> edges) {
+  TopologyChange change = cut(static_cast<const Topology&>(mesh), mesh.vertex_count(), edges);
+  MeshCut result{mesh, std::move(change.origins)};
+  static_cast<Topology&>(result.mesh) = std::move(change.topology);
+  for (std::size_t v = mesh.vertex_count(); v < result.origins.size(); ++v) {
+    const int origin = result.origins[v];
+    result.mesh.positions.push_back(mesh.positions[static_cast<std::size_t>(origin)]);
+    for (MeshGroup& group : result.mesh.groups) {
+      if (std::binary_search(group.vertices.begin(), group.vertices.end(), origin))
+        group.vertices.push_back(static_cast<int>(v));
+    }
+  }
+  return result;
 }
 
 Vec3 newell_normal(ConstVectors positions, std::span<const int> face) {

@@ -2,12 +2,14 @@
 // simulated skin must match the input file.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
+#include "muslin/topology/topology.hpp"
 
 namespace muslin {
 
@@ -18,26 +20,29 @@ struct MeshGroup {
   std::vector<int> vertices;  ///< indices of the vertices of those faces, or a vertex group of its own
 };
 
-struct Mesh {
-  std::string name;                ///< object name, may be empty
-  std::vector<Vec3> positions;     ///< #V by 3
-  std::vector<int> face_offsets;   ///< #F + 1; face f has corners face_offsets[f] … face_offsets[f+1]−1
-  std::vector<int> face_vertices;  ///< #C vertex of each corner
-  std::vector<Vec2> uvs;           ///< #T texture coordinates; a vertex on a seam has several
-  std::vector<int> corner_uvs;     ///< #C index into uvs, −1 where a corner has none; empty if none has
+struct Mesh : Topology {
+  std::string name;             ///< object name, may be empty
+  std::vector<Vec3> positions;  ///< #V by 3
+  std::vector<Vec2> uvs;        ///< #T texture coordinates; a vertex on a seam has several
+  std::vector<int> corner_uvs;  ///< #C index into uvs, −1 where a corner has none; empty if none has
   std::vector<MeshGroup> groups;
 
   std::size_t vertex_count() const { return positions.size(); }
-  std::size_t face_count() const { return face_offsets.empty() ? 0 : face_offsets.size() - 1; }
-  std::span<const int> face(std::size_t f) const {
-    return {face_vertices.data() + face_offsets[f],
-            static_cast<std::size_t>(face_offsets[f + 1] - face_offsets[f])};
-  }
   /// Appends a polygon of at least three corners, without texture coordinates. Errors: usage.
   void add_face(std::span<const int> vertices);
   /// Returns the smallest box around all faces; around all positions if there are no faces.
   Box bounds() const;
 };
+
+/// A mesh with opened edges, and the vertex of the earlier one that each of its vertices comes from.
+struct MeshCut {
+  Mesh mesh;
+  std::vector<int> origins;  ///< #V of the new mesh
+};
+/// Opens edges as `cut` does for a topology. Faces, their order and their texture coordinates stay; new
+/// vertices come last, lie where their origins do and belong to the groups of those. Errors: those of the
+/// other `cut`.
+MeshCut cut(const Mesh& mesh, std::span<const std::array<int, 2>> edges);
 
 /// The polygons cut into triangles, in face order, n − 2 from n corners, with the orientation of their
 /// polygon. Concave polygons are cut inside their outline, seen along their normal; vertices are neither

@@ -136,24 +136,6 @@ std::vector<char> turn_within_patches(std::span<const EdgeUse> uses, const std::
 
 }  // namespace
 
-std::vector<EdgeUse> edge_uses(std::span<const int> face_offsets, std::span<const int> face_vertices) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(face_vertices.size());
-  for (std::size_t f = 0; f + 1 < face_offsets.size(); ++f) {
-    const int begin = face_offsets[f], end = face_offsets[f + 1];
-    for (int c = begin; c < end; ++c) {
-      const int from = face_vertices[static_cast<std::size_t>(c)];
-      const int to = face_vertices[static_cast<std::size_t>(c + 1 < end ? c + 1 : begin)];
-      if (from == to) continue;
-      uses.push_back({std::min(from, to), std::max(from, to), static_cast<int>(f), c, from < to});
-    }
-  }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.low, a.high, a.face, a.corner) < std::tie(b.low, b.high, b.face, b.corner);
-  });
-  return uses;
-}
-
 Patches find_patches(std::span<const EdgeUse> uses, std::size_t face_count) {
   OrientedSets sets(face_count);
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
@@ -178,13 +160,16 @@ Patches find_patches(std::span<const EdgeUse> uses, std::size_t face_count) {
 
 OrientedTriangles orient(ConstVectors positions, std::span<const Vec3i> triangles) {
   const std::vector<int> first = weld(positions);
-  std::vector<int> offsets(triangles.size() + 1), corners(3 * triangles.size());
+  Topology welded;
+  welded.face_offsets.resize(triangles.size() + 1);
+  welded.face_vertices.resize(3 * triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    offsets[t + 1] = static_cast<int>(3 * (t + 1));
+    welded.face_offsets[t + 1] = static_cast<int>(3 * (t + 1));
     for (int k = 0; k < 3; ++k)
-      corners[3 * t + static_cast<std::size_t>(k)] = first[static_cast<std::size_t>(triangles[t][k])];
+      welded.face_vertices[3 * t + static_cast<std::size_t>(k)] =
+          first[static_cast<std::size_t>(triangles[t][k])];
   }
-  const std::vector<EdgeUse> uses = edge_uses(offsets, corners);
+  const std::vector<EdgeUse> uses = edge_uses(welded);
 
   const auto corner = [&](std::size_t t, int k) -> const Vec3& {
     return positions[static_cast<std::size_t>(triangles[t][k])];

@@ -1,4 +1,4 @@
-// Finds faces that share an edge and a common orientation for them.
+// Finds a common orientation for faces that share edges.
 #pragma once
 
 #include <span>
@@ -6,30 +6,9 @@
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
+#include "muslin/topology/topology.hpp"
 
 namespace muslin {
-
-/// One side of one face.
-struct EdgeUse {
-  int low = 0, high = 0;  ///< the edge's vertices, low ≤ high
-  int face = 0;
-  int corner = 0;        ///< index of the corner where the side starts
-  bool ascends = false;  ///< the face runs from low to high
-};
-
-/// Returns the sides of all faces, sorted by edge, then face, then corner. Faces as in Mesh: face f has
-/// corners face_offsets[f] … face_offsets[f+1]−1, corner c is vertex face_vertices[c]. Sides from a vertex to
-/// itself are left out.
-std::vector<EdgeUse> edge_uses(std::span<const int> face_offsets, std::span<const int> face_vertices);
-
-/// Calls visit(uses of one edge) for each edge of sorted `uses`.
-template <class Visit>
-void for_each_edge(std::span<const EdgeUse> uses, const Visit& visit) {
-  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    while (end < uses.size() && uses[end].low == uses[begin].low && uses[end].high == uses[begin].high) ++end;
-    visit(uses.subspan(begin, end - begin));
-  }
-}
 
 /// Faces connected through manifold edges (used by exactly two faces), and those to flip so that they share
 /// an orientation.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
+#include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/orientation.hpp"
 
@@ -13,28 +13,6 @@ namespace muslin {
 namespace {
 
 constexpr double miter_limit = 2;
-
-// Corners of the mesh that move together: the corners at one vertex of faces joined by manifold edges.
-class CornerSets {
- public:
-  explicit CornerSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int corner) {
-    while (parent_[at(corner)] != corner) {
-      parent_[at(corner)] = parent_[at(parent_[at(corner)])];
-      corner = parent_[at(corner)];
-    }
-    return corner;
-  }
-  void join(int a, int b) {
-    a = find(a);
-    b = find(b);
-    parent_[at(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  static std::size_t at(int corner) { return static_cast<std::size_t>(corner); }
-  std::vector<int> parent_;
-};
 
 // Returns the unit normal of a polygon by Newell's sum; zero if it has no area.
 Vec3 polygon_normal(const Mesh& mesh, std::span<const int> face) {
@@ -63,8 +41,7 @@ double inner_angle(const Mesh& mesh, std::span<const int> face, std::size_t i, c
 
 bool is_closed(const Mesh& mesh) {
   bool closed = mesh.face_count() > 0;
-  for_each_edge(edge_uses(mesh.face_offsets, mesh.face_vertices),
-                [&](std::span<const EdgeUse> edge) { closed = closed && edge.size() > 1; });
+  for_each_edge(edge_uses(mesh), [&](std::span<const EdgeUse> edge) { closed = closed && edge.size() > 1; });
   return closed;
 }
 
@@ -73,21 +50,16 @@ Mesh thicken(const Mesh& mesh, double thickness) {
     throw Error(ErrorKind::usage, "a sheet was given the thickness " + std::to_string(thickness) + " m",
                 "give a positive thickness in metres");
   const std::size_t face_count = mesh.face_count();
-  const std::vector<EdgeUse> uses = edge_uses(mesh.face_offsets, mesh.face_vertices);
+  const std::vector<EdgeUse> uses = edge_uses(mesh);
   const Patches patches = find_patches(uses, face_count);
   const auto turned = [&](int f) { return patches.turned[static_cast<std::size_t>(f)] != 0; };
   const auto orientable = [&](int f) {
     return patches.orientable[static_cast<std::size_t>(patches.patch[static_cast<std::size_t>(f)])] != 0;
   };
-  const auto following = [&](const EdgeUse& use) {
-    const int next = use.corner + 1;
-    return next < mesh.face_offsets[static_cast<std::size_t>(use.face) + 1]
-               ? next
-               : mesh.face_offsets[static_cast<std::size_t>(use.face)];
-  };
+  const auto following = [&](const EdgeUse& use) { return mesh.next_corner(use.face, use.corner); };
 
   // Find the corners that move together and the sides of faces that need a wall.
-  CornerSets sets(mesh.face_vertices.size());
+  DisjointSets sets(mesh.face_vertices.size());
   for (std::size_t f = 0; f < face_count; ++f) {
     const std::span<const int> face = mesh.face(f);
     for (std::size_t i = 0; i < face.size(); ++i) {  // a vertex named twice in a row has no side between

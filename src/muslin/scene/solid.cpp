@@ -4,8 +4,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
+#include <utility>
 #include <vector>
+
+#include "muslin/core/disjoint_sets.hpp"
+#include "muslin/topology/topology.hpp"
 
 namespace muslin {
 namespace {
@@ -13,41 +16,20 @@ namespace {
 using Edge = std::pair<int, int>;
 
 std::vector<Edge> boundary_edges(const Mesh& mesh) {
-  std::vector<Edge> edges;
-  edges.reserve(mesh.face_vertices.size());
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto face = mesh.face(f);
-    for (std::size_t c = 0; c < face.size(); ++c) {
-      edges.push_back(std::minmax({face[c], face[(c + 1) % face.size()]}));
-    }
-  }
-  std::sort(edges.begin(), edges.end());
   std::vector<Edge> boundary;
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t j = i;
-    while (j < edges.size() && edges[j] == edges[i]) ++j;
-    if (j - i == 1) boundary.push_back(edges[i]);
-    i = j;
-  }
+  for_each_edge(edge_uses(mesh), [&](std::span<const EdgeUse> edge) {
+    if (edge.size() == 1) boundary.emplace_back(edge[0].low, edge[0].high);
+  });
   return boundary;
 }
 
 /// Perimeters of the connected pieces of the boundary.
 std::vector<double> loop_lengths(const Mesh& mesh, const std::vector<Edge>& boundary) {
-  std::vector<int> parent(mesh.vertex_count());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int v) {
-    while (parent[static_cast<std::size_t>(v)] != v) {
-      auto& above = parent[static_cast<std::size_t>(v)];
-      above = parent[static_cast<std::size_t>(above)];
-      v = above;
-    }
-    return v;
-  };
-  for (const auto& [a, b] : boundary) parent[static_cast<std::size_t>(root(a))] = root(b);
+  DisjointSets loops(mesh.vertex_count());
+  for (const auto& [a, b] : boundary) loops.join(a, b);
   std::map<int, double> lengths;
   for (const auto& [a, b] : boundary) {
-    lengths[root(a)] +=
+    lengths[loops.find(a)] +=
         (mesh.positions[static_cast<std::size_t>(a)] - mesh.positions[static_cast<std::size_t>(b)]).norm();
   }
   std::vector<double> result;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -17,12 +16,6 @@ namespace {
 constexpr double flattest = 1e-9;
 // Below this length of its projection a unit vector defines no direction on a face.
 constexpr double shortest_projection = 1e-3;
-
-/// The side of a triangle from corner `corner` to the next.
-struct Side {
-  int low = 0, high = 0;  // vertices, low < high
-  int triangle = 0, corner = 0;
-};
 
 class ShellBuilder {
  public:
@@ -122,46 +115,38 @@ class ShellBuilder {
   }
 
   void add_hinges() {
-    std::vector<Side> sides;
-    sides.reserve(3 * shell_.triangles.size());
+    Topology topology;
+    topology.face_offsets.resize(shell_.triangles.size() + 1);
     for (std::size_t t = 0; t < shell_.triangles.size(); ++t) {
-      for (int c = 0; c < 3; ++c) {
-        const auto [low, high] = std::minmax(shell_.triangles[t][c], shell_.triangles[t][(c + 1) % 3]);
-        sides.push_back({low, high, static_cast<int>(t), c});
-      }
+      topology.face_offsets[t + 1] = static_cast<int>(3 * (t + 1));
+      for (const int v : shell_.triangles[t]) topology.face_vertices.push_back(v);
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
-      return std::tuple(p.low, p.high, p.triangle) < std::tuple(q.low, q.high, q.triangle);
-    });
     std::size_t edges = 0;
-    for (std::size_t i = 0; i < sides.size();) {
-      std::size_t j = i;
-      while (j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high) ++j;
+    for_each_edge(edge_uses(topology), [&](std::span<const EdgeUse> edge) {
       ++edges;
-      shell_.mean_edge += (rest(sides[i].high) - rest(sides[i].low)).norm();
-      if (j - i > 2) refuse_junction(sides[i], j - i);
-      if (j - i == 2) add_hinge(sides[i], sides[i + 1]);
-      i = j;
-    }
+      shell_.mean_edge += (rest(edge[0].high) - rest(edge[0].low)).norm();
+      if (edge.size() > 2) refuse_junction(edge[0], edge.size());
+      if (edge.size() == 2) add_hinge(edge[0], edge[1]);
+    });
     shell_.mean_edge /= static_cast<double>(edges);
   }
 
-  [[noreturn]] void refuse_junction(const Side& side, std::size_t count) const {
+  [[noreturn]] void refuse_junction(const EdgeUse& side, std::size_t count) const {
     throw Error(
         ErrorKind::input,
         fmt::format("the edge between vertices {} and {} is shared by {} triangles, one of polygon "
                     "{}; a shell's edges have one or two",
                     side.low + 1, side.high + 1, count,
-                    shell_.faces[static_cast<std::size_t>(side.triangle)] + 1),
+                    shell_.faces[static_cast<std::size_t>(side.face)] + 1),
         "separate the extra polygons in the modeller (Blender: Select > All by Trait > Non Manifold)");
   }
 
-  void add_hinge(const Side& first, const Side& second) {
-    const auto t1 = static_cast<std::size_t>(first.triangle), t2 = static_cast<std::size_t>(second.triangle);
+  void add_hinge(const EdgeUse& first, const EdgeUse& second) {
+    const auto t1 = static_cast<std::size_t>(first.face), t2 = static_cast<std::size_t>(second.face);
     const Vec3i& v = shell_.triangles[t1];
+    const int c = first.corner % 3;  // triangles have three corners each
     Hinge hinge;
-    hinge.vertices = {v[first.corner], v[(first.corner + 1) % 3], v[(first.corner + 2) % 3],
-                      shell_.triangles[t2][(second.corner + 2) % 3]};
+    hinge.vertices = {v[c], v[(c + 1) % 3], v[(c + 2) % 3], shell_.triangles[t2][(second.corner + 2) % 3]};
     const Vec3 edge = rest(hinge.vertices[1]) - rest(hinge.vertices[0]);
     hinge.length = edge.norm();
     hinge.area = shell_.areas[t1] + shell_.areas[t2];

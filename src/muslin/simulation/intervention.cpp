@@ -40,7 +40,7 @@ void Simulation::Impl::put(State changed) {
   state.motion.previous_dt = 0;
   if (moved) {
     state.holds.reanchor(model->pins, state.motion.time, state.motion.positions);
-    if (model->contact) touch();
+    if (model->contact) touch(options.allow_tangled);
   }
   measure_energy();
   state.energy.work += energy() - before;

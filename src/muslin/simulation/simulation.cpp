@@ -34,7 +34,7 @@ Simulation::Impl::Impl(std::shared_ptr<const Model> the_model, const SimulationO
       throw Error(ErrorKind::usage, "symplectic_euler does not support contact",
                   "use implicit_euler, bdf2 or linearly_implicit_euler");
     require_untangled(state.motion.positions);
-    touch();
+    touch(options.allow_tangled);
     state.counts.smallest_gap = state.contact.smallest_gap;
   }
   measure_energy();
@@ -74,13 +74,13 @@ void Simulation::Impl::require_untangled(const std::vector<Vec3>& positions) con
   if (!options.allow_tangled) refuse_crossings(*model->contact, positions, {model->scene.file.string()});
 }
 
-void Simulation::Impl::touch() {
+void Simulation::Impl::touch(bool leave_free) {
   scratch.forget();
   scratch.prepare(*model);
   state.contact = {};
   ContactGuard& guard = *scratch.guard(*model, state);
   const std::vector<Vec3>& x = state.motion.positions;
-  if (options.allow_tangled) guard.allow_initial_intersections(x);
+  if (leave_free) guard.allow_initial_intersections(x);
   guard.begin(x, scratch.fixed);
   guard.potential(x, StepGuard::Friction::anew);
   guard.end(x);

@@ -1,8 +1,10 @@
 // The façade of a run: a model and its state, advanced frame by frame.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,6 +64,19 @@ class Simulation {
   void set_positions(ConstVectors positions);
   /// The same for velocities (#V by 3 [m/s]). Errors: usage, for another count or numbers not finite.
   void set_velocities(ConstVectors velocities);
+
+  /// Opens edges of a shell, given by pairs of vertices of its mesh counted from 0, and goes on with what
+  /// became of it: cut() in muslin/topology says where vertices part and how new ones are numbered. Vertices
+  /// keep their motion, pins what they hold; the energy of hinges that are gone counts as work. Contact
+  /// forgets what stuck, and lets both sides of the cut pass until they have parted. Forces and energies that
+  /// a program added are dropped, and references to bodies and the model are no longer valid. A checkpoint
+  /// made from now on belongs to model(). Errors: usage, for a body that is no shell or a pair that is no
+  /// edge; input, where a pin or contact cannot go on.
+  void cut(const std::string& body, std::span<const std::array<int, 2>> edges);
+  /// The same for any other model: its vertex v continues vertex origins[v] of the model so far. The
+  /// change of energy counts as work. Errors: usage, for another number of origins or one out of range;
+  /// input, if surfaces would cross.
+  void change_model(std::shared_ptr<const Model> model, std::span<const int> origins);
 
   /// The complete state as bytes, and back: a run continued from it gives the same bits as one that never
   /// stopped. Only the bodies must be the same; pins, loads, duration and solver settings may have changed

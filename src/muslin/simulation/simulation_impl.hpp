@@ -27,8 +27,9 @@ struct Simulation::Impl {
   double progress() const;  ///< of the frame in work, 0 … 1
   /// Throws what is wrong with positions at which contact is to begin.
   void require_untangled(const std::vector<Vec3>& positions) const;
-  /// Begins contact without a past, at positions where nothing crosses that may not.
-  void touch();
+  /// Begins contact without a past, at positions where nothing crosses that may not. With `leave_free` what
+  /// crosses there is left free until it parts.
+  void touch(bool leave_free);
   void measure_energy();
   void describe_state(Diagnostics& row) const;
   /// By hand; for what was put there is no step before.

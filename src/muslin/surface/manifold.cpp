@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 #include <span>
 
 #include <tbb/parallel_sort.h>
+
+#include "muslin/core/disjoint_sets.hpp"
 
 namespace muslin {
 namespace {
@@ -19,22 +20,6 @@ struct Side {
 };
 
 int next_corner(int side) { return side % 3 == 2 ? side - 2 : side + 1; }
-
-class Corners {
- public:
-  explicit Corners(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
-  void join(int a, int b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 std::vector<Side> sorted_sides(const std::vector<PartTriangle>& triangles) {
   std::vector<Side> sides(3 * triangles.size());
@@ -96,7 +81,7 @@ void cut(const std::array<int, 3>& corners, const std::array<int, 3>& middles, s
 
 Manifold make_manifold(const std::vector<PartTriangle>& triangles) {
   const std::vector<Side> sides = sorted_sides(triangles);
-  Corners corners(sides.size());
+  DisjointSets corners(sides.size());
   std::vector<std::array<int, 2>> crowded;  // pairs of sides of edges that have several
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].edge == sides[begin].edge) ++end;
@@ -112,7 +97,7 @@ Manifold make_manifold(const std::vector<PartTriangle>& triangles) {
   std::vector<int> number(sides.size(), -1);
   std::vector<int> vertex_of(sides.size());
   for (std::size_t s = 0; s < sides.size(); ++s) {
-    int& vertex = number[corners.root(static_cast<int>(s))];
+    int& vertex = number[corners.find(static_cast<int>(s))];
     if (vertex < 0) {
       vertex = static_cast<int>(manifold.sources.size());
       const int source = triangles[s / 3].vertices[s % 3];
