@@ -13,7 +13,8 @@ namespace {
 /// group), c and t written (24); forwards: c and t read (24), r updated (24), M read (16), w written (12).
 /// For each block of 16 couplings, in either sweep: 128 of coefficients, a unit, and a Block or a Link.
 double counted_bytes(const Problem& problem) {
-  const EliminationOrder& pattern = *problem.springs->pattern();
+  const SpringNetwork& network = *problem.springs->network();
+  const EliminationOrder pattern(network.runs, network.vertex_count);
   const auto positions = static_cast<double>(pattern.position_count());
   const auto blocks = static_cast<double>(pattern.block_count()),
              links = static_cast<double>(pattern.links().size());

@@ -8,7 +8,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/affine_frame.hpp"
-#include "muslin/potential/linearization.hpp"
+#include "muslin/solver/linearization.hpp"
 
 namespace muslin {
 namespace {

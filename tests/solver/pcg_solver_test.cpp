@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "muslin/energy/membrane_energy.hpp"
-#include "muslin/potential/linearization.hpp"
 
 namespace muslin {
 namespace {
@@ -35,11 +34,11 @@ class Presses : public Potential {
     }
   }
   void add_diagonal_blocks(ConstVectors, std::span<Mat3>) const override {}
-  void linearize(ConstVectors, Linearization& into, std::size_t first) const override {
-    RelativeStiffness& k = into.relative_stiffness(first, static_cast<std::size_t>(count_));
-    k.resize(pairs_.size(), 2 * pairs_.size());
+  void linearize(ConstVectors, HessianSink& into, std::size_t first) const override {
+    const RelativeTerms k =
+        into.relative_terms(first, static_cast<std::size_t>(count_), pairs_.size(), 2 * pairs_.size());
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      const RelativeStiffness::Weight weights[] = {{pairs_[i].a, 1}, {pairs_[i].b, -1}};
+      const RelativeTerms::Weight weights[] = {{pairs_[i].a, 1}, {pairs_[i].b, -1}};
       k.set(i, 2 * i, pairs_[i].normal, into.scale() * stiffness_, 0, weights);
     }
   }

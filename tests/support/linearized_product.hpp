@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "muslin/potential/linearization.hpp"
+#include "muslin/solver/linearization.hpp"
 
 namespace muslin::test {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "muslin/core/parallel.hpp"
-#include "muslin/potential/linearization.hpp"
+#include "muslin/potential/hessian_sink.hpp"
 
 namespace muslin {
 namespace {
@@ -80,24 +80,25 @@ void ContactHessian::add_hessian_product(ConstVectors /*q*/, ConstVectors p, Vec
       y[static_cast<std::size_t>(w.vertex)] += w.weight * forces[r];
 }
 
-void ContactHessian::linearize(ConstVectors /*q*/, Linearization& into, std::size_t first) const {
-  const std::uint8_t* fixed = into.fixed() + first;
+void ContactHessian::linearize(ConstVectors /*q*/, HessianSink& into, std::size_t first) const {
+  const std::uint8_t* fixed = into.fixed().data() + first;
   std::vector<int> begins(rows_.size() + 1, 0);
   parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r)
       for (const StepGuard::Weight& w : weights(r)) begins[r + 1] += fixed[w.vertex] == 0 ? 1 : 0;
   });
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
-  RelativeStiffness& stiffness = into.relative_stiffness(first, vertex_count_);
-  stiffness.resize(rows_.size(), static_cast<std::size_t>(begins.back()));
+  const RelativeTerms terms =
+      into.relative_terms(first, vertex_count_, rows_.size(), static_cast<std::size_t>(begins.back()));
+  const double scale = into.scale();
   parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
-    std::vector<RelativeStiffness::Weight> free;
+    std::vector<RelativeTerms::Weight> free;
     for (std::size_t r = begin; r < end; ++r) {
       free.clear();
       for (const StepGuard::Weight& w : weights(r))
         if (fixed[w.vertex] == 0) free.push_back({w.vertex, static_cast<float>(w.weight)});
-      stiffness.set(r, static_cast<std::size_t>(begins[r]), rows_[r].normal, into.scale() * rows_[r].a,
-                    into.scale() * rows_[r].b, free);
+      terms.set(r, static_cast<std::size_t>(begins[r]), rows_[r].normal, scale * rows_[r].a,
+                scale * rows_[r].b, free);
     }
   });
 }

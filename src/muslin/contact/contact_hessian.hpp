@@ -36,7 +36,7 @@ class ContactHessian : public Potential {
   void for_each_row(const std::function<void(const StepGuard::Contact&)>& visit) const;
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
-  void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;
+  void linearize(ConstVectors q, HessianSink& into, std::size_t first) const override;
 
  private:
   struct Stiffness {

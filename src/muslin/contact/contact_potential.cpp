@@ -9,7 +9,6 @@
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
-#include "muslin/potential/linearization.hpp"
 
 namespace muslin {
 namespace {
@@ -284,7 +283,7 @@ void ContactPotential::add_diagonal_blocks(ConstVectors q, std::span<Mat3> block
   hessian(q).add_diagonal_blocks(q, blocks);
 }
 
-void ContactPotential::linearize(ConstVectors q, Linearization& into, std::size_t first) const {
+void ContactPotential::linearize(ConstVectors q, HessianSink& into, std::size_t first) const {
   hessian(q).linearize(q, into, first);
 }
 

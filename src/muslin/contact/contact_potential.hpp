@@ -60,7 +60,7 @@ class ContactPotential : public Potential {
   /// b′ ∂²d/∂x² is left out.
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
-  void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;
+  void linearize(ConstVectors q, HessianSink& into, std::size_t first) const override;
 
   ContactHessian hessian(ConstVectors q) const;
   /// Returns the Hessian at the q the potential was made for.

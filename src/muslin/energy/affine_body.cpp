@@ -10,7 +10,8 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/affine_frame.hpp"
-#include "muslin/potential/linearization.hpp"
+#include "muslin/potential/hessian_sink.hpp"
+#include "muslin/potential/symmetric_pattern.hpp"
 
 namespace muslin {
 namespace {
@@ -104,9 +105,10 @@ void AffineBodyEnergy::add_diagonal_blocks(ConstVectors q, std::span<Mat3> block
             sign(c, i) * sign(c, j) / 16.0 * h[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
 }
 
-void AffineBodyEnergy::linearize(ConstVectors q, Linearization& into, std::size_t first) const {
+void AffineBodyEnergy::linearize(ConstVectors q, HessianSink& into, std::size_t first) const {
   const auto h = projected(half_axes(q));
-  SymmetricMatrix& matrix = into.matrix(all_pairs(), first);
+  const PairBlocks blocks = into.pair_blocks(all_pairs(), first);
+  const double scale = into.scale();
   for (int row = 0; row < 4; ++row) {
     for (int column = row; column < 4; ++column) {
       Mat3 block = Mat3::Zero();
@@ -114,8 +116,8 @@ void AffineBodyEnergy::linearize(ConstVectors q, Linearization& into, std::size_
         for (int j = 0; j < 3; ++j)
           block += sign(static_cast<std::size_t>(row), i) * sign(static_cast<std::size_t>(column), j) / 16.0 *
                    h[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-      block *= into.scale();
-      Float4* const columns = matrix.block(all_pairs()->find(row, column));
+      block *= scale;
+      Float4* const columns = blocks.block(all_pairs()->find(row, column));
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 3; ++l) columns[k][l] += static_cast<float>(block(l, k));
     }

@@ -31,7 +31,7 @@ class AffineBodyEnergy : public Potential {
   void add_gradient(ConstVectors q, Vectors g) const override;
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
-  void linearize(ConstVectors q, Linearization& into, std::size_t first) const override;
+  void linearize(ConstVectors q, HessianSink& into, std::size_t first) const override;
 
  private:
   Mat3 strain(const Mat3& b) const;  ///< r

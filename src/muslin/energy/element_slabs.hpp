@@ -13,7 +13,7 @@
 
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/vectors.hpp"
-#include "muslin/potential/symmetric_matrix.hpp"
+#include "muslin/potential/symmetric_pattern.hpp"
 
 namespace muslin {
 

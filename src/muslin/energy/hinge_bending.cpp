@@ -301,14 +301,14 @@ void HingeBending::add_stiffness_blocks(Stiffness, ConstVectors x, std::span<Mat
 }
 
 void HingeBending::add_stiffness_matrix(Stiffness, ConstVectors x, double scale,
-                                        std::span<const double> /*masses*/, SymmetricMatrix& matrix) const {
+                                        std::span<const double> /*masses*/, PairBlocks blocks) const {
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<4>::Slab& slab) {
     Batch<4> corners, g;
     slabs_.gather(first, count, x, corners);
     angle_gradients(corners, g);
     unsigned rows[lanes];
     slabs_.corners_in(first, count, slab, rows);
-    add_squares(g, stiffness_.data() + first, scale, count, rows, slots_.data() + first, matrix.block(0));
+    add_squares(g, stiffness_.data() + first, scale, count, rows, slots_.data() + first, blocks.columns);
   });
 }
 

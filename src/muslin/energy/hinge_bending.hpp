@@ -43,7 +43,7 @@ class HingeBending : public ShellEnergy {
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
   void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
-                            SymmetricMatrix& matrix) const override;
+                            PairBlocks blocks) const override;
 
  private:
   ElementSlabs<4> slabs_;

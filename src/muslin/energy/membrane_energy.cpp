@@ -235,7 +235,7 @@ void MembraneEnergy::add_stiffness_blocks(Stiffness kind, ConstVectors x, std::s
 }
 
 void MembraneEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
-                                          std::span<const double> masses, SymmetricMatrix& matrix) const {
+                                          std::span<const double> masses, PairBlocks blocks) const {
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {
     Batch<3> corners;
     BlockFactors factors;
@@ -252,7 +252,7 @@ void MembraneEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double
     block_factors(constants_, kind, rests_.at(first), scale, held, corners, factors);
     unsigned rows[lanes];
     slabs_.corners_in(first, count, slab, rows);
-    add_blocks(factors, count, rows, slots_.data() + first, matrix.block(0));
+    add_blocks(factors, count, rows, slots_.data() + first, blocks.columns);
   });
 }
 

@@ -46,7 +46,7 @@ class MembraneEnergy : public ShellEnergy {
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
   void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
-                            SymmetricMatrix& matrix) const override;
+                            PairBlocks blocks) const override;
 
   struct Constants {
     double c11 = 0, c12 = 0, c22 = 0, g = 0;  ///< [N/m]

@@ -3,8 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "muslin/potential/linearization.hpp"
-
 namespace muslin {
 namespace {
 
@@ -38,10 +36,10 @@ class Dashpots : public Potential {
     for (std::size_t v = 0; v < blocks.size(); ++v) blocks[v] += factor_ * own[v];
   }
 
-  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
+  void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override {
     if (energy_->pattern()) {
       energy_->add_stiffness_matrix(Stiffness::material, predicted_, into.scale() * factor_, {},
-                                    into.matrix(energy_->pattern(), first));
+                                    into.pair_blocks(energy_->pattern(), first));
     } else {
       into.add_general(*this, first, x);
     }
@@ -72,10 +70,10 @@ class Dashpots : public Potential {
 
 }  // namespace
 
-void ShellEnergy::linearize(ConstVectors x, Linearization& into, std::size_t first) const {
+void ShellEnergy::linearize(ConstVectors x, HessianSink& into, std::size_t first) const {
   if (pattern_) {
     add_stiffness_matrix(Stiffness::bounded, x, into.scale(), into.masses().subspan(first, x.size()),
-                         into.matrix(pattern_, first));
+                         into.pair_blocks(pattern_, first));
   } else {
     into.add_general(projected_, first, x);
   }

@@ -6,8 +6,9 @@
 #include <span>
 #include <utility>
 
+#include "muslin/potential/hessian_sink.hpp"
 #include "muslin/potential/potential.hpp"
-#include "muslin/potential/symmetric_matrix.hpp"
+#include "muslin/potential/symmetric_pattern.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
@@ -42,12 +43,12 @@ class ShellEnergy : public Potential {
   /// Adds `scale` K to the blocks of a matrix of pattern(); `kind` is not exact. With `bounded`, M + scale K
   /// is at least a tenth of M, the diagonal of `masses` (#V, read only then), in every direction; of the
   /// energies of a shell only the membrane uses the masses.
-  virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
-                                    SymmetricMatrix& matrix) const = 0;
+  virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
+                                    std::span<const double> masses, PairBlocks blocks) const = 0;
   /// Returns the shell's pattern, if given; without it the inner solver computes products from x.
   const std::shared_ptr<const SymmetricPattern>& pattern() const { return pattern_; }
 
-  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override;
+  void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override;
 
  private:
   /// The same energy with the projected Hessian.

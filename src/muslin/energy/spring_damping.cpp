@@ -2,9 +2,9 @@
 
 #include <utility>
 
+#include "muslin/core/buffer.hpp"
 #include "muslin/core/parallel.hpp"
-#include "muslin/potential/float_vectors.hpp"
-#include "muslin/potential/linearization.hpp"
+#include "muslin/potential/hessian_sink.hpp"
 
 namespace muslin {
 namespace {
@@ -74,8 +74,8 @@ class Dashpots : public Potential {
   }
   /// The springs' couplings grow along their own direction. It differs from that of the prediction by as
   /// much as they turn within the step; Newton's method and iterative refinement compensate for it.
-  void linearize(ConstVectors, Linearization& into, std::size_t first) const override {
-    add_dashpot_hessian(springs_->block_springs(into.scale() * factor_), predicted_, first, into);
+  void linearize(ConstVectors, HessianSink& into, std::size_t first) const override {
+    into.add_dashpots(springs_->network(), springs_->kinds(into.scale() * factor_), predicted_, first);
   }
 
  private:

@@ -7,7 +7,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
-#include "muslin/potential/linearization.hpp"
+#include "muslin/potential/hessian_sink.hpp"
 
 namespace muslin {
 namespace {
@@ -59,14 +59,13 @@ SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::arra
     types_.push_back({width * direction.offset.cast<double>().norm(),
                       width * moduli[static_cast<std::size_t>(direction.kind)]});
   }
-  int vertex_count = 0;
-  std::vector<CouplingRun> runs;
+  SpringNetwork network;
   for (const SpringRun& run : springs.runs) {
-    vertex_count = std::max({vertex_count, run.a + run.length, run.b + run.length});
-    runs.push_back({run.direction, run.a, run.b, run.length});
+    network.vertex_count = std::max({network.vertex_count, run.a + run.length, run.b + run.length});
+    network.runs.push_back({run.direction, run.a, run.b, run.length});
   }
   const JoinedRuns joined = join(springs);
-  slabs_ = SpringSlabs(joined.runs, vertex_count);
+  slabs_ = SpringSlabs(joined.runs, network.vertex_count);
   const auto weight = [&](std::int64_t spring) {
     return spring < 0 ? 0.0F : weights_.empty() ? 1.0F : weights_[static_cast<std::size_t>(spring)];
   };
@@ -75,27 +74,18 @@ SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::arra
     std::transform(joined.springs.begin(), joined.springs.end(), slot_weights_.begin(), weight);
   }
 
-  std::vector<std::int64_t> order;
-  pattern_ =
-      std::make_shared<const EliminationOrder>(runs, vertex_count, weights_.empty() ? nullptr : &order);
-  if (weights_.empty()) return;
-  // Couplings are counted through the runs, as the order in which they are given.
-  std::vector<std::int64_t> spring_of;
-  for (const SpringRun& run : springs.runs)
-    for (int i = 0; i < run.length; ++i) spring_of.push_back(run.first + i);
-  block_weights_.resize(order.size());
-  std::transform(order.begin(), order.end(), block_weights_.begin(), [&](std::int64_t coupling) {
-    return weight(coupling < 0 ? -1 : spring_of[static_cast<std::size_t>(coupling)]);
-  });
+  if (!weights_.empty()) {
+    for (const SpringRun& run : springs.runs)
+      for (int i = 0; i < run.length; ++i) network.weights.push_back(weight(run.first + i));
+  }
+  network_ = std::make_shared<const SpringNetwork>(std::move(network));
 }
 
-BlockSprings SpringEnergy::block_springs(double factor) const {
-  BlockSprings springs;
-  springs.pattern = pattern_;
+std::vector<CentralSpring> SpringEnergy::kinds(double factor) const {
+  std::vector<CentralSpring> kinds;
   for (const Type& type : types_)
-    springs.types.push_back({static_cast<float>(factor * type.stiffness), static_cast<float>(type.rest)});
-  springs.weights = block_weights_.empty() ? nullptr : block_weights_.data();
-  return springs;
+    kinds.push_back({static_cast<float>(factor * type.stiffness), static_cast<float>(type.rest)});
+  return kinds;
 }
 
 double SpringEnergy::value(ConstVectors x) const {
@@ -138,8 +128,8 @@ void SpringEnergy::add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) c
   });
 }
 
-void SpringEnergy::linearize(ConstVectors x, Linearization& into, std::size_t first) const {
-  set_spring_hessian(block_springs(into.scale()), x, first, into);
+void SpringEnergy::linearize(ConstVectors x, HessianSink& into, std::size_t first) const {
+  into.set_springs(network_, kinds(into.scale()), x, first);
 }
 
 double SpringEnergy::max_stretch(ConstVectors x) const {

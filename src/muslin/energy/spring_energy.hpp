@@ -16,12 +16,11 @@
 #include <memory>
 #include <vector>
 
-#include "muslin/energy/spring_hessian_kernels.hpp"
 #include "muslin/energy/spring_kernels.hpp"
 #include "muslin/energy/spring_slabs.hpp"
 #include "muslin/lattice/springs.hpp"
-#include "muslin/potential/elimination_order.hpp"
 #include "muslin/potential/potential.hpp"
+#include "muslin/potential/spring_network.hpp"
 
 namespace muslin {
 
@@ -38,7 +37,7 @@ class SpringEnergy : public Potential {
   void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override;
 
-  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override;
+  void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override;
 
   /// Returns the largest |z| / r over all springs of weight above 0, 1 if there are no springs.
   double max_stretch(ConstVectors x) const;
@@ -59,10 +58,10 @@ class SpringEnergy : public Potential {
   }
   std::int64_t count() const { return count_; }
 
-  /// Returns the springs in the elimination order of the inner solver; kinds are directions.
-  const std::shared_ptr<const EliminationOrder>& pattern() const { return pattern_; }
-  /// Returns all springs of the pattern with `factor` k.
-  BlockSprings block_springs(double factor) const;
+  /// Returns the springs as the linear systems take them; kinds are directions.
+  const std::shared_ptr<const SpringNetwork>& network() const { return network_; }
+  /// Returns rest length and `factor` k by direction.
+  std::vector<CentralSpring> kinds(double factor) const;
 
  private:
   struct Type {
@@ -72,9 +71,8 @@ class SpringEnergy : public Potential {
   std::vector<Type> types_;  // by direction
   std::vector<float> weights_;
   std::int64_t count_ = 0;
-  std::shared_ptr<const EliminationOrder> pattern_;
-  std::vector<float> slot_weights_;   // 0 where joining runs left a gap
-  std::vector<float> block_weights_;  // in the order of the pattern, 16 each block
+  std::shared_ptr<const SpringNetwork> network_;
+  std::vector<float> slot_weights_;  // 0 where joining runs left a gap
   SpringSlabs slabs_;
 };
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "muslin/core/buffer.hpp"
 #include "muslin/core/vector_code.hpp"
-#include "muslin/potential/float_vectors.hpp"
 
 namespace muslin {
 namespace {

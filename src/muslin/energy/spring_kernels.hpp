@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "muslin/potential/spring_network.hpp"
+
 namespace muslin {
 
 /// #n by 3 numbers as three arrays.
@@ -20,9 +22,6 @@ struct SpringType {
   double rest = 0;
   const float* weight = nullptr;  ///< null: all 1
 };
-
-/// A spring shorter than this times its rest length has no direction.
-inline constexpr double shortest_spring = 1e-12;
 
 /// Forces are computed for so many springs at most.
 inline constexpr int max_springs = 1024;

@@ -18,7 +18,7 @@
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/energy/spring_kernels.hpp"
-#include "muslin/potential/elimination_order.hpp"
+#include "muslin/potential/spring_network.hpp"
 
 namespace muslin {
 

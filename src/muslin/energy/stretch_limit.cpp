@@ -295,8 +295,7 @@ void StretchLimitEnergy::add_stiffness_blocks(Stiffness kind, ConstVectors x, st
 }
 
 void StretchLimitEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
-                                              std::span<const double> /*masses*/,
-                                              SymmetricMatrix& matrix) const {
+                                              std::span<const double> /*masses*/, PairBlocks blocks) const {
   const double square = barrier_.onset() * barrier_.onset();
   slabs_.for_each_batch([&](int first, int count, const ElementSlabs<3>::Slab& slab) {
     Batch<3> corners;
@@ -308,7 +307,7 @@ void StretchLimitEnergy::add_stiffness_matrix(Stiffness kind, ConstVectors x, do
     find_stiffness(barrier_, stiffness_, kind, rest, s, stiff);
     unsigned rows[lanes];
     slabs_.corners_in(first, count, slab, rows);
-    add_blocks(stiff, rest, scale, count, rows, slots_.data() + first, matrix.block(0));
+    add_blocks(stiff, rest, scale, count, rows, slots_.data() + first, blocks.columns);
   });
 }
 

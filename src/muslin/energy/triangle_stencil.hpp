@@ -15,6 +15,7 @@
 
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/element_slabs.hpp"
+#include "muslin/potential/hessian_sink.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {

@@ -31,7 +31,7 @@ class FrozenForces : public Potential {
   }
   void add_hessian_product(ConstVectors, ConstVectors, Vectors) const override {}
   void add_diagonal_blocks(ConstVectors, std::span<Mat3>) const override {}
-  void linearize(ConstVectors, Linearization&, std::size_t) const override {}
+  void linearize(ConstVectors, HessianSink&, std::size_t) const override {}
 
  private:
   std::vector<Vec3> forces_;

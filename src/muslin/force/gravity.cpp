@@ -32,7 +32,7 @@ class UniformField : public Potential {
   }
   void add_hessian_product(ConstVectors, ConstVectors, Vectors) const override {}
   void add_diagonal_blocks(ConstVectors, std::span<Mat3>) const override {}
-  void linearize(ConstVectors, Linearization&, std::size_t) const override {}
+  void linearize(ConstVectors, HessianSink&, std::size_t) const override {}
 
  private:
   /// Calls also(v) for all v; returns the energy.

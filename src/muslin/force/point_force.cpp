@@ -19,7 +19,7 @@ class PointForce::DeadLoad : public Potential {
   }
   void add_hessian_product(ConstVectors, ConstVectors, Vectors) const override {}
   void add_diagonal_blocks(ConstVectors, std::span<Mat3>) const override {}
-  void linearize(ConstVectors, Linearization&, std::size_t) const override {}
+  void linearize(ConstVectors, HessianSink&, std::size_t) const override {}
 
  private:
   std::shared_ptr<const std::vector<Share>> shares_;

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "muslin/core/parallel.hpp"
-#include "muslin/potential/linearization.hpp"
+#include "muslin/potential/hessian_sink.hpp"
 
 namespace muslin {
 namespace {
@@ -39,8 +39,10 @@ class Drag : public Potential {
       for (std::size_t v = begin; v < end; ++v) blocks[v].diagonal().array() += coefficient(v);
     });
   }
-  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
-    for (std::size_t v = 0; v < x.size(); ++v) into.add_identity(first + v, into.scale() * coefficient(v));
+  void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override {
+    const std::span<float> identity = into.identity(first, x.size());
+    const double scale = into.scale();
+    for (std::size_t v = 0; v < x.size(); ++v) identity[v] += static_cast<float>(scale * coefficient(v));
   }
 
  private:

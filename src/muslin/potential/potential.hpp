@@ -16,7 +16,7 @@
 
 namespace muslin {
 
-class Linearization;
+class HessianSink;
 
 /// W(x) in joule for positions x (#V by 3, m). Implementations are immutable, safe to call from several
 /// threads, deterministic for any thread count, and parallel inside where that pays.
@@ -44,7 +44,7 @@ class Potential {
 
   /// Adds the Hessian at x to `into`, W being a potential of its vertices first, first + 1, …. x must stay
   /// valid while `into` is used. By default a potential is added by its product.
-  virtual void linearize(ConstVectors x, Linearization& into, std::size_t first) const;
+  virtual void linearize(ConstVectors x, HessianSink& into, std::size_t first) const;
 
   /// The largest t such that moving from x by t·d stays where W is finite and safe (1 means: all the way
   /// and beyond is safe too).

@@ -26,7 +26,7 @@ class RestrictedPotential : public Potential {
   void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override {
     local_->add_diagonal_blocks(part(x), part(blocks));
   }
-  void linearize(ConstVectors x, Linearization& into, std::size_t first) const override {
+  void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override {
     local_->linearize(part(x), into, first + first_);
   }
   double max_step(ConstVectors x, ConstVectors d) const override {

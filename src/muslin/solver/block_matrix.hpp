@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "muslin/potential/float_vectors.hpp"
+#include "muslin/solver/float_vectors.hpp"
 
 namespace muslin {
 

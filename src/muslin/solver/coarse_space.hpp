@@ -13,7 +13,7 @@
 #include <memory>
 #include <vector>
 
-#include "muslin/potential/linearization.hpp"
+#include "muslin/solver/linearization.hpp"
 #include "muslin/solver/multilevel.hpp"
 
 namespace muslin {

@@ -98,7 +98,7 @@ void EisenstatPcg::for_each_vertex(const Value* by_vertex, const Body& body) con
 /// The identity and which vertices are free, by position.
 void EisenstatPcg::arrange_identity() {
   const float* const identity = h_->identity();
-  const std::uint8_t* const fixed = h_->fixed();
+  const std::uint8_t* const fixed = h_->fixed().data();
   const std::size_t count = h_->size();
   std::vector<std::shared_ptr<const EliminationOrder>> patterns;
   for (const SpringHessian* set : h_->sets()) patterns.push_back(set->shared_pattern());

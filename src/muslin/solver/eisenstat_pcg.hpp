@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "muslin/potential/linearization.hpp"
+#include "muslin/solver/linearization.hpp"
 #include "muslin/solver/sweep_kernels.hpp"
 
 namespace muslin {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <span>
 
-#include "muslin/potential/linearization.hpp"
+#include "muslin/solver/linearization.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {

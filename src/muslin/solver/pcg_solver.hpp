@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <memory>
 
-#include "muslin/potential/linearization.hpp"
 #include "muslin/solver/coarse_space.hpp"
 #include "muslin/solver/conjugate_gradient.hpp"
 #include "muslin/solver/eisenstat_pcg.hpp"
+#include "muslin/solver/linearization.hpp"
 
 namespace muslin {
 

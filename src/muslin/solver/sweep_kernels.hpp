@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include "muslin/potential/elimination_order.hpp"
-#include "muslin/potential/float_vectors.hpp"
+#include "muslin/solver/elimination_order.hpp"
+#include "muslin/solver/float_vectors.hpp"
 
 namespace muslin::sweep_kernels {
 

@@ -2,10 +2,11 @@
 //
 //   H = diag(identity) + couplings + K,   K = block matrices + the loose rest,
 //
-// the loose rest being relative stiffnesses and potentials of any other kind.
+// the loose rest being relative stiffnesses, rank-one terms and general potentials.
 //
-// Potentials add themselves (Potential::linearize): springs as couplings, shells as block matrices, drags as
-// part of the identity, contacts as relative stiffness, everything else by its product in double.
+// It is the HessianSink to which potentials add themselves (Potential::linearize): springs become couplings,
+// pair blocks matrices, contacts relative stiffness; what is added as a general potential is multiplied in
+// double.
 #pragma once
 
 #include <cstddef>
@@ -14,36 +15,46 @@
 #include <span>
 #include <vector>
 
+#include "muslin/core/buffer.hpp"
 #include "muslin/core/vectors.hpp"
-#include "muslin/potential/relative_stiffness.hpp"
-#include "muslin/potential/spring_hessian.hpp"
-#include "muslin/potential/symmetric_matrix.hpp"
+#include "muslin/potential/hessian_sink.hpp"
+#include "muslin/potential/spring_network.hpp"
+#include "muslin/solver/relative_stiffness.hpp"
+#include "muslin/solver/spring_hessian.hpp"
+#include "muslin/solver/symmetric_matrix.hpp"
 
 namespace muslin {
 
-class Potential;
-
-class Linearization {
+class Linearization : public HessianSink {
  public:
   /// Resets to H = M; potentials are added times `scale`.
   void reset(std::span<const double> masses, std::span<const std::uint8_t> fixed, double scale);
 
   std::size_t size() const { return identity_.size(); }
-  double scale() const { return scale_; }
-  std::span<const double> masses() const { return masses_; }
+  double scale() const override { return scale_; }
+  std::span<const double> masses() const override { return masses_; }
+  std::span<const std::uint8_t> fixed() const override { return fixed_; }
+
+  void set_springs(const std::shared_ptr<const SpringNetwork>& network, std::span<const CentralSpring> kinds,
+                   ConstVectors x, std::size_t first) override;
+  void add_dashpots(const std::shared_ptr<const SpringNetwork>& network, std::span<const CentralSpring> kinds,
+                    ConstVectors x, std::size_t first) override;
+  PairBlocks pair_blocks(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first) override {
+    return matrix(pattern, first).blocks();
+  }
+  RelativeTerms relative_terms(std::size_t first, std::size_t count, std::size_t terms,
+                               std::size_t weights) override;
+  std::span<float> identity(std::size_t first, std::size_t count) override {
+    return {identity_.data() + first, count};
+  }
+  void add_rank_one(RankOneTerm term, std::size_t first) override;
+  void add_general(const Potential& potential, std::size_t first, ConstVectors x) override;
 
   /// Returns the couplings of this pattern on vertices first, first + 1, …; zero at the first request. A
   /// vertex has couplings of one pattern only.
   SpringHessian& couplings(const std::shared_ptr<const EliminationOrder>& pattern, std::size_t first);
-  /// Returns the blocks of this pattern on vertices first, first + 1, …; zero at the first request. Added
-  /// blocks must be symmetric and, with the masses, positive definite.
+  /// Returns the matrix of this pattern on vertices first, first + 1, …; zero at the first request.
   SymmetricMatrix& matrix(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first);
-  /// Adds an empty relative stiffness between `count` vertices first, first + 1, …; terms are already scaled.
-  RelativeStiffness& relative_stiffness(std::size_t first, std::size_t count);
-  /// H += value on vertex v; already scaled.
-  void add_identity(std::size_t v, double value) { identity_.data()[v] += static_cast<float>(value); }
-  /// Adds a potential of vertices first, first + 1, … at x, kept by reference.
-  void add_general(const Potential& potential, std::size_t first, ConstVectors x);
 
   /// Call when all potentials have been added.
   void finish();
@@ -51,7 +62,7 @@ class Linearization {
   /// Leaves out the negative eigenvalues of the couplings.
   void project();
 
-  /// Returns scratch memory for computing couplings and, later, for the solver; valid until the next call.
+  /// Returns scratch memory for the solver, valid until the next call or until a potential is added.
   std::span<float> workspace(std::size_t count) {
     if (workspace_.size() < count) workspace_.resize(count);
     return {workspace_.data(), count};
@@ -62,10 +73,11 @@ class Linearization {
   std::span<const SymmetricMatrix* const> matrices() const { return matrices_; }
   bool has_springs() const;
   const float* identity() const { return identity_.data(); }
-  const std::uint8_t* fixed() const { return fixed_.data(); }
 
   /// True if K is not zero.
-  bool has_remainder() const { return !matrices_.empty() || !generals_.empty() || relative_count_ > 0; }
+  bool has_remainder() const {
+    return !matrices_.empty() || !generals_.empty() || relative_count_ > 0 || !rank_ones_.empty();
+  }
   /// Diagonal blocks of K, with the identity positive definite: xx, xy, xz of `upper` and yy, yz, zz of
   /// `lower`, #V by 3. Relative stiffnesses are scaled down where masses would be lost to rounding.
   const FloatVectors& remainder_upper() const { return upper_; }
@@ -84,6 +96,17 @@ class Linearization {
     std::size_t first;
     ConstVectors x;
   };
+  /// A network in the order of elimination.
+  struct Arranged {
+    std::shared_ptr<const SpringNetwork> network;
+    std::shared_ptr<const EliminationOrder> pattern;
+    std::vector<float> weights;  // 16 each block; empty: all 1
+  };
+  struct RankOne {
+    RankOneTerm term;
+    std::size_t first;
+  };
+  const Arranged& arranged(const std::shared_ptr<const SpringNetwork>& network);
   void cover_gap(std::size_t begin, std::size_t end);
   void find_remainder_diagonal();
 
@@ -96,6 +119,8 @@ class Linearization {
   std::vector<std::unique_ptr<SymmetricMatrix>> matrix_storage_;
   std::vector<const SymmetricMatrix*> matrices_;
   std::vector<General> generals_;
+  std::vector<RankOne> rank_ones_;
+  std::vector<std::unique_ptr<Arranged>> networks_;            // reused from step to step
   std::vector<std::unique_ptr<RelativeStiffness>> relatives_;  // reused from step to step
   std::size_t relative_count_ = 0;                             // of this x
   FloatVectors upper_, lower_;

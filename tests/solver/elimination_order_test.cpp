@@ -1,6 +1,6 @@
 // The order of elimination: every coupling once, seen from both of its ends, nothing read before it is known
 // and nothing shared by tasks that run side by side.
-#include "muslin/potential/elimination_order.hpp"
+#include "muslin/solver/elimination_order.hpp"
 
 #include <algorithm>
 #include <map>

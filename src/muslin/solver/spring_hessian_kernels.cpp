@@ -1,11 +1,10 @@
-#include "muslin/energy/spring_hessian_kernels.hpp"
+#include "muslin/solver/spring_hessian_kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/vector_code.hpp"
-#include "muslin/energy/spring_kernels.hpp"
 
 namespace muslin {
 namespace {
@@ -14,10 +13,15 @@ constexpr int lanes = EliminationOrder::lanes;
 constexpr std::size_t grain = 1024;  // blocks
 constexpr float shortest = static_cast<float>(shortest_spring);
 
+/// Coordinates by position.
+struct Coordinates {
+  const double *x = nullptr, *y = nullptr, *z = nullptr;
+};
+
 /// x in the order of the pattern, 0 where a position is empty.
-Columns arrange(const EliminationOrder& pattern, ConstVectors x, Linearization& into) {
+Coordinates arrange(const EliminationOrder& pattern, ConstVectors x, std::span<float> workspace) {
   const std::size_t size = pattern.position_count();
-  auto* const to = reinterpret_cast<double*>(into.workspace(2 * 3 * size).data());
+  auto* const to = reinterpret_cast<double*>(workspace.data());
   const int* const vertices = pattern.vertices().data();
   constexpr std::size_t ahead = 64;
   parallel_for(size, 8192, [&](std::size_t begin, std::size_t end) {
@@ -36,9 +40,9 @@ Columns arrange(const EliminationOrder& pattern, ConstVectors x, Linearization& 
 struct Batch {
   const EliminationOrder::Block* blocks = nullptr;
   std::size_t count = 0;
-  const BlockSprings::Type* types = nullptr;
+  const CentralSpring* kinds = nullptr;
   const float* weights = nullptr;
-  Columns x;
+  Coordinates x;
   std::uint32_t* words = nullptr;
   float* units = nullptr;
 };
@@ -48,7 +52,7 @@ struct Kernels {
 };
 
 namespace plain {
-#include "muslin/energy/spring_hessian_kernels.inc"
+#include "muslin/solver/spring_hessian_kernels.inc"
 }  // namespace plain
 }  // namespace
 
@@ -57,7 +61,7 @@ namespace plain {
 #pragma GCC target("arch=x86-64-v3")
 namespace {
 namespace avx2 {
-#include "muslin/energy/spring_hessian_kernels.inc"
+#include "muslin/solver/spring_hessian_kernels.inc"
 }  // namespace avx2
 }  // namespace
 #pragma GCC pop_options
@@ -65,7 +69,7 @@ namespace avx2 {
 #pragma GCC target("arch=x86-64-v4")
 namespace {
 namespace avx512 {
-#include "muslin/energy/spring_hessian_kernels.inc"
+#include "muslin/solver/spring_hessian_kernels.inc"
 }  // namespace avx512
 }  // namespace
 #pragma GCC pop_options
@@ -85,16 +89,14 @@ const Kernels& kernels() {
 }
 
 template <class Kernel>
-void for_each_batch(const BlockSprings& springs, ConstVectors x, std::size_t first, Linearization& into,
-                    const Kernel& kernel) {
-  SpringHessian& couplings = into.couplings(springs.pattern, first);
-  const EliminationOrder& pattern = *springs.pattern;
-  const Columns at = arrange(pattern, x, into);
+void for_each_batch(const BlockSprings& springs, SpringHessian& couplings, const Kernel& kernel) {
+  const EliminationOrder& pattern = couplings.pattern();
+  const Coordinates at = arrange(pattern, springs.x, springs.workspace);
   parallel_for(pattern.block_count(), grain, [&](std::size_t begin, std::size_t end) {
     Batch batch;
     batch.blocks = pattern.blocks().data() + begin;
     batch.count = end - begin;
-    batch.types = springs.types.data();
+    batch.kinds = springs.kinds.data();
     batch.weights = springs.weights != nullptr ? springs.weights + lanes * begin : nullptr;
     batch.x = at;
     batch.words = couplings.words(begin);
@@ -105,13 +107,12 @@ void for_each_batch(const BlockSprings& springs, ConstVectors x, std::size_t fir
 
 }  // namespace
 
-void set_spring_hessian(const BlockSprings& springs, ConstVectors x, std::size_t first, Linearization& into) {
-  for_each_batch(springs, x, first, into, kernels().spring_hessian_kernels);
+void set_spring_hessian(const BlockSprings& springs, SpringHessian& couplings) {
+  for_each_batch(springs, couplings, kernels().spring_hessian_kernels);
 }
 
-void add_dashpot_hessian(const BlockSprings& dashpots, ConstVectors x, std::size_t first,
-                         Linearization& into) {
-  for_each_batch(dashpots, x, first, into, kernels().dashpot_couplings);
+void add_dashpot_hessian(const BlockSprings& dashpots, SpringHessian& couplings) {
+  for_each_batch(dashpots, couplings, kernels().dashpot_couplings);
 }
 
 }  // namespace muslin

@@ -12,8 +12,8 @@
 #include <memory>
 #include <utility>
 
-#include "muslin/potential/elimination_order.hpp"
-#include "muslin/potential/float_vectors.hpp"
+#include "muslin/core/buffer.hpp"
+#include "muslin/solver/elimination_order.hpp"
 
 namespace muslin {
 

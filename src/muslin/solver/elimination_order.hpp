@@ -19,13 +19,9 @@
 #include <span>
 #include <vector>
 
-namespace muslin {
+#include "muslin/potential/spring_network.hpp"
 
-/// Couplings of vertices a + i and b + i, 0 ≤ i < length.
-struct CouplingRun {
-  int kind = 0;  ///< the owner's own number, 0 … 255
-  int a = 0, b = 0, length = 0;
-};
+namespace muslin {
 
 class EliminationOrder {
  public:

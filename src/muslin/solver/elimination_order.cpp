@@ -1,4 +1,4 @@
-#include "muslin/potential/elimination_order.hpp"
+#include "muslin/solver/elimination_order.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "muslin/potential/relative_stiffness.hpp"
+#include "muslin/solver/relative_stiffness.hpp"
 
 #include <algorithm>
 
@@ -20,23 +20,15 @@ void RelativeStiffness::reset(std::size_t first, std::size_t count) {
   weights_.clear();
 }
 
-void RelativeStiffness::resize(std::size_t terms, std::size_t weights) {
+RelativeTerms RelativeStiffness::resize(std::size_t terms, std::size_t weights) {
   terms_.resize(terms);
   weights_.resize(weights);
-}
-
-void RelativeStiffness::set(std::size_t t, std::size_t begin, const Vec3& normal, double normal_stiffness,
-                            double tangential, std::span<const Weight> weights) {
-  std::copy(weights.begin(), weights.end(), weights_.begin() + static_cast<std::ptrdiff_t>(begin));
-  const Float4 n = {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
-                    static_cast<float>(normal.z()), 0};
-  terms_[t] = Term{n, static_cast<float>(normal_stiffness - tangential), static_cast<float>(tangential),
-                   static_cast<int>(begin), static_cast<int>(begin + weights.size())};
+  return {terms_.data(), weights_.data()};
 }
 
 void RelativeStiffness::finish() {
   next_.assign(count_, 0);
-  for (const Weight& w : weights_) ++next_[at(w.vertex)];
+  for (const RelativeTerms::Weight& w : weights_) ++next_[at(w.vertex)];
   vertices_.clear();
   offsets_.assign(1, 0);
   for (std::size_t v = 0; v < count_; ++v) {
@@ -57,7 +49,7 @@ double RelativeStiffness::add_product(const Float4* p, Float4* y) {
   const double curvature = parallel_sum(terms_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t) {
-      const Term& term = terms_[t];
+      const RelativeTerms::Term& term = terms_[t];
       Float4 u = {0, 0, 0, 0};
       for (int k = term.begin; k < term.end; ++k) u += weights_[at(k)].weight * p[weights_[at(k)].vertex];
       const Float4 n = term.normal * u;
@@ -85,34 +77,36 @@ double RelativeStiffness::add_diagonal(const float* identity, const std::uint8_t
     float value = 0;
     Largest operator+(const Largest& other) const { return {std::max(value, other.value)}; }
   };
-  const auto largest = parallel_sum(vertices_.size(), grain, Largest{}, [&](std::size_t begin, std::size_t end) {
-    Largest ratio;
-    for (std::size_t i = begin; i < end; ++i) {
-      Float4 x = {0, 0, 0, 0}, y = x;
-      float zz = 0;
-      for (int k = offsets_[i]; k < offsets_[i + 1]; ++k) {
-        const Term& term = terms_[at(shares_[at(k)].term)];
-        const float square = shares_[at(k)].weight * shares_[at(k)].weight;
-        const Float4 n = square * term.difference * term.normal;
-        const float tangential = square * term.tangential;
-        x += n[0] * term.normal + Float4{tangential, 0, 0, 0};
-        y += n[1] * term.normal + Float4{0, tangential, 0, 0};
-        zz += n[2] * term.normal[2] + tangential;
-      }
-      const int v = vertices_[i];
-      const float trace = x[0] + y[1] + zz, bound = most * identity[v];
-      const float scale = trace > bound ? bound / trace : 1;
-      if (fixed[v] == 0) ratio.value = std::max(ratio.value, trace / identity[v]);
-      upper.x[v] += scale * x[0], upper.y[v] += scale * x[1], upper.z[v] += scale * x[2];
-      lower.x[v] += scale * y[1], lower.y[v] += scale * y[2], lower.z[v] += scale * zz;
-    }
-    return ratio;
-  });
+  const auto largest =
+      parallel_sum(vertices_.size(), grain, Largest{}, [&](std::size_t begin, std::size_t end) {
+        Largest ratio;
+        for (std::size_t i = begin; i < end; ++i) {
+          Float4 x = {0, 0, 0, 0}, y = x;
+          float zz = 0;
+          for (int k = offsets_[i]; k < offsets_[i + 1]; ++k) {
+            const RelativeTerms::Term& term = terms_[at(shares_[at(k)].term)];
+            const float square = shares_[at(k)].weight * shares_[at(k)].weight;
+            const Float4 n = square * term.difference * term.normal;
+            const float tangential = square * term.tangential;
+            x += n[0] * term.normal + Float4{tangential, 0, 0, 0};
+            y += n[1] * term.normal + Float4{0, tangential, 0, 0};
+            zz += n[2] * term.normal[2] + tangential;
+          }
+          const int v = vertices_[i];
+          const float trace = x[0] + y[1] + zz, bound = most * identity[v];
+          const float scale = trace > bound ? bound / trace : 1;
+          if (fixed[v] == 0) ratio.value = std::max(ratio.value, trace / identity[v]);
+          upper.x[v] += scale * x[0], upper.y[v] += scale * x[1], upper.z[v] += scale * x[2];
+          lower.x[v] += scale * y[1], lower.y[v] += scale * y[2], lower.z[v] += scale * zz;
+        }
+        return ratio;
+      });
   return static_cast<double>(largest.value);
 }
 
 std::size_t RelativeStiffness::bytes() const {
-  return terms_.capacity() * sizeof(Term) + weights_.capacity() * sizeof(Weight) +
+  return terms_.capacity() * sizeof(RelativeTerms::Term) +
+         weights_.capacity() * sizeof(RelativeTerms::Weight) +
          (vertices_.capacity() + offsets_.capacity() + next_.capacity()) * sizeof(int) +
          shares_.capacity() * sizeof(Share) + forces_.capacity() * sizeof(Float4);
 }

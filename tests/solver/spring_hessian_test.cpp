@@ -1,5 +1,5 @@
 // What 8 bytes a coupling keep, and what projecting leaves out.
-#include "muslin/potential/spring_hessian.hpp"
+#include "muslin/solver/spring_hessian.hpp"
 
 #include <cmath>
 #include <random>

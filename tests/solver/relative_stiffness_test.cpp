@@ -1,6 +1,6 @@
 // Stiffness against relative motion: products and diagonal blocks are those of the sum that the header
 // states.
-#include "muslin/potential/relative_stiffness.hpp"
+#include "muslin/solver/relative_stiffness.hpp"
 
 #include <algorithm>
 #include <random>
@@ -23,11 +23,12 @@ struct Terms {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> any(-1, 1);
     stiffness.reset(first, vertices);
-    stiffness.resize(static_cast<std::size_t>(count), 4 * static_cast<std::size_t>(count));
+    const RelativeTerms terms =
+        stiffness.resize(static_cast<std::size_t>(count), 4 * static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       const Vec3 n = Vec3(any(random), any(random), any(random)).normalized();
       const double normal_stiffness = 5 + any(random), tangential = 1 + any(random);
-      std::vector<RelativeStiffness::Weight> weights;
+      std::vector<RelativeTerms::Weight> weights;
       Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3, 3 * vertices);
       for (int k = 0; k < 4; ++k) {
         // Half of the vertices are part of no term.
@@ -36,8 +37,8 @@ struct Terms {
         weights.push_back({v, static_cast<float>(w)});
         a.block<3, 3>(0, 3 * v) = static_cast<double>(static_cast<float>(w)) * Mat3::Identity();
       }
-      stiffness.set(static_cast<std::size_t>(i), 4 * static_cast<std::size_t>(i), n, normal_stiffness,
-                    tangential, weights);
+      terms.set(static_cast<std::size_t>(i), 4 * static_cast<std::size_t>(i), n, normal_stiffness, tangential,
+                weights);
       const Mat3 block = tangential * Mat3::Identity() + (normal_stiffness - tangential) * n * n.transpose();
       dense += a.transpose() * block * a;
     }

@@ -1,4 +1,4 @@
-#include "muslin/potential/spring_hessian.hpp"
+#include "muslin/solver/spring_hessian.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // Symmetric matrices of blocks: patterns, products against dense ones, same bits for any thread count.
-#include "muslin/potential/symmetric_matrix.hpp"
+#include "muslin/solver/symmetric_matrix.hpp"
 
 #include <array>
 #include <cstring>

@@ -1,24 +1,21 @@
-#include "muslin/potential/linearization.hpp"
+#include "muslin/solver/linearization.hpp"
 
 #include <algorithm>
 #include <cassert>
 
 #include "muslin/core/parallel.hpp"
 #include "muslin/potential/potential.hpp"
+#include "muslin/solver/spring_hessian_kernels.hpp"
 
 namespace muslin {
 namespace {
 
 constexpr std::size_t grain = 8192;  // vertices
-/// Contact adds at most this times the mass to a diagonal block of the preconditioner. With more, float and the
-/// packed factors of sixteen vertices would lose masses.
+/// Contact adds at most this times the mass to a diagonal block of the preconditioner. With more, float and
+/// the packed factors of sixteen vertices would lose masses.
 constexpr float max_relative = 1e5;
 
 }  // namespace
-
-void Potential::linearize(ConstVectors x, Linearization& into, std::size_t first) const {
-  into.add_general(*this, first, x);
-}
 
 void Linearization::reset(std::span<const double> masses, std::span<const std::uint8_t> fixed, double scale) {
   masses_ = masses;
@@ -27,10 +24,41 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   sets_.clear();
   matrices_.clear();
   generals_.clear();
+  rank_ones_.clear();
   relative_count_ = 0;
   stiffest_relative_ = 0;
   identity_.resize(masses.size());
   for (std::size_t v = 0; v < masses.size(); ++v) identity_.data()[v] = static_cast<float>(masses[v]);
+}
+
+const Linearization::Arranged& Linearization::arranged(const std::shared_ptr<const SpringNetwork>& network) {
+  for (const auto& known : networks_)
+    if (known->network == network) return *known;
+  std::vector<std::int64_t> order;
+  const bool weighted = !network->weights.empty();
+  Arranged arranged;
+  arranged.network = network;
+  arranged.pattern = std::make_shared<const EliminationOrder>(network->runs, network->vertex_count,
+                                                              weighted ? &order : nullptr);
+  for (const std::int64_t spring : order)
+    arranged.weights.push_back(spring < 0 ? 0.0F : network->weights[static_cast<std::size_t>(spring)]);
+  return *networks_.emplace_back(std::make_unique<Arranged>(std::move(arranged)));
+}
+
+void Linearization::set_springs(const std::shared_ptr<const SpringNetwork>& network,
+                                std::span<const CentralSpring> kinds, ConstVectors x, std::size_t first) {
+  const Arranged& a = arranged(network);
+  set_spring_hessian({kinds, a.weights.empty() ? nullptr : a.weights.data(), x,
+                      workspace(2 * 3 * a.pattern->position_count())},
+                     couplings(a.pattern, first));
+}
+
+void Linearization::add_dashpots(const std::shared_ptr<const SpringNetwork>& network,
+                                 std::span<const CentralSpring> kinds, ConstVectors x, std::size_t first) {
+  const Arranged& a = arranged(network);
+  add_dashpot_hessian({kinds, a.weights.empty() ? nullptr : a.weights.data(), x,
+                       workspace(2 * 3 * a.pattern->position_count())},
+                      couplings(a.pattern, first));
 }
 
 SpringHessian& Linearization::couplings(const std::shared_ptr<const EliminationOrder>& pattern,
@@ -66,11 +94,16 @@ void Linearization::add_general(const Potential& potential, std::size_t first, C
   generals_.push_back({&potential, first, x});
 }
 
-RelativeStiffness& Linearization::relative_stiffness(std::size_t first, std::size_t count) {
+void Linearization::add_rank_one(RankOneTerm term, std::size_t first) {
+  if (term.factor > 0) rank_ones_.push_back({std::move(term), first});
+}
+
+RelativeTerms Linearization::relative_terms(std::size_t first, std::size_t count, std::size_t terms,
+                                            std::size_t weights) {
   if (relative_count_ == relatives_.size()) relatives_.push_back(std::make_unique<RelativeStiffness>());
   RelativeStiffness& relative = *relatives_[relative_count_++];
   relative.reset(first, count);
-  return relative;
+  return relative.resize(terms, weights);
 }
 
 /// Adds empty couplings in pieces that end where block matrices do: packing groups of vertices with a common
@@ -114,6 +147,10 @@ void Linearization::finish() {
   std::erase_if(storage_,
                 [&](const auto& c) { return std::find(sets_.begin(), sets_.end(), c.get()) == sets_.end(); });
 
+  std::erase_if(networks_, [&](const auto& n) {
+    return std::none_of(sets_.begin(), sets_.end(),
+                        [&](const SpringHessian* set) { return &set->pattern() == n->pattern.get(); });
+  });
   std::erase_if(matrix_storage_, [&](const auto& m) {
     return std::find(matrices_.begin(), matrices_.end(), m.get()) == matrices_.end();
   });
@@ -132,9 +169,22 @@ void Linearization::find_remainder_diagonal() {
   }
   for (std::size_t i = 0; i < relative_count_; ++i) {
     const auto first = static_cast<std::ptrdiff_t>(relatives_[i]->first());
-    const double stiffest = relatives_[i]->add_diagonal(identity() + first, this->fixed() + first,
+    const double stiffest = relatives_[i]->add_diagonal(identity() + first, fixed_.data() + first,
                                                         max_relative, u + first, l + first);
     stiffest_relative_ = std::max(stiffest_relative_, stiffest);
+  }
+  for (const RankOne& rank_one : rank_ones_) {
+    for (std::size_t i = 0; i < rank_one.term.vertices.size(); ++i) {
+      const std::size_t v = rank_one.first + static_cast<std::size_t>(rank_one.term.vertices[i]);
+      const Vec3& g = rank_one.term.gradients[i];
+      const Vec3 scaled = rank_one.term.factor * g;
+      u.x[v] += static_cast<float>(scaled.x() * g.x());
+      u.y[v] += static_cast<float>(scaled.x() * g.y());
+      u.z[v] += static_cast<float>(scaled.x() * g.z());
+      l.x[v] += static_cast<float>(scaled.y() * g.y());
+      l.y[v] += static_cast<float>(scaled.y() * g.z());
+      l.z[v] += static_cast<float>(scaled.z() * g.z());
+    }
   }
   if (generals_.empty()) return;
   blocks_.assign(size(), Mat3::Zero());
@@ -168,6 +218,20 @@ double Linearization::add_remainder_product(const Float4* p, Float4* y) {
     sum += matrix->add_product(p + matrix->first(), y + matrix->first());
   for (std::size_t i = 0; i < relative_count_; ++i)
     sum += relatives_[i]->add_product(p + relatives_[i]->first(), y + relatives_[i]->first());
+  for (const RankOne& rank_one : rank_ones_) {
+    const auto& [factor, vertices, gradients] = rank_one.term;
+    const auto at = [&](std::size_t i) { return rank_one.first + static_cast<std::size_t>(vertices[i]); };
+    double along = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const Float4& d = p[at(i)];
+      along += gradients[i].dot(Vec3(d[0], d[1], d[2]));
+    }
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const Vec3 f = factor * along * gradients[i];
+      y[at(i)] += Float4{static_cast<float>(f.x()), static_cast<float>(f.y()), static_cast<float>(f.z()), 0};
+    }
+    sum += factor * along * along;
+  }
   if (generals_.empty()) return sum;
   p_.resize(size());
   y_.resize(size());

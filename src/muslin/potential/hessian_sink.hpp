@@ -1,0 +1,106 @@
+// HessianSink takes the Hessians of potentials, element by element, for the linear systems of a step. It owns
+// the storage; a potential asks once for a view of the storage of a pattern and adds its blocks there, from
+// several threads where it likes.
+//
+// Vertices are those of all bodies: `first` is the vertex that a potential counts as its vertex 0. All values
+// are added times `scale()`, which the potential multiplies by itself.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "muslin/core/float4.hpp"
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+class Potential;
+class SymmetricPattern;
+struct SpringNetwork;
+struct CentralSpring;
+
+/// The blocks of a SymmetricPattern: three columns of four floats each, the fourth 0. Different blocks may be
+/// written by different threads.
+struct PairBlocks {
+  Float4* columns = nullptr;
+  Float4* block(int index) const { return columns + 3 * static_cast<std::size_t>(index); }
+};
+
+/// Terms Aᵀ (a n nᵀ + b (I − n nᵀ)) A with A p = Σ wᵢ pᵢ: stiffness against relative motion.
+struct RelativeTerms {
+  struct Weight {
+    int vertex = 0;  ///< of the body
+    float weight = 0;
+  };
+  struct Term {
+    Float4 normal;
+    float difference, tangential;  ///< a − b and b
+    int begin, end;                ///< weights
+  };
+  Term* terms = nullptr;
+  Weight* weights = nullptr;
+
+  /// Sets term t, whose weights are number `begin` and following: normal n of length 1, normal_stiffness = a
+  /// ≥ 0 and tangential = b ≥ 0, already scaled; each vertex once. Several threads may set terms.
+  void set(std::size_t t, std::size_t begin, const Vec3& normal, double normal_stiffness, double tangential,
+           std::span<const Weight> of_term) const {
+    std::copy(of_term.begin(), of_term.end(), weights + begin);
+    terms[t] = {Float4{static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                       static_cast<float>(normal.z()), 0},
+                static_cast<float>(normal_stiffness - tangential), static_cast<float>(tangential),
+                static_cast<int>(begin), static_cast<int>(begin + of_term.size())};
+  }
+};
+
+/// factor · g gᵀ, g = Σ gᵢ over a list of vertices: one stiff combination of many of them, as the volume of a
+/// body.
+struct RankOneTerm {
+  double factor = 0;  ///< ≥ 0, already scaled
+  std::vector<int> vertices;
+  std::vector<Vec3> gradients;  ///< gᵢ, as many
+};
+
+class HessianSink {
+ public:
+  virtual ~HessianSink() = default;
+
+  /// The factor of the Hessians in the system: dt² [s²].
+  virtual double scale() const = 0;
+  /// #V of all bodies: masses [kg], and not 0 where a vertex is held.
+  virtual std::span<const double> masses() const = 0;
+  virtual std::span<const std::uint8_t> fixed() const = 0;
+
+  /// Sets the Hessian of springs ½ k (|z| − r)² at x, the body's positions. A vertex has springs of one
+  /// network only. `kinds` by CouplingRun::kind, k already scaled.
+  virtual void set_springs(const std::shared_ptr<const SpringNetwork>& network,
+                           std::span<const CentralSpring> kinds, ConstVectors x, std::size_t first) = 0;
+  /// Adds dashpots k n nᵀ along springs already set. n is parallel to those springs; x counts where a spring
+  /// has no direction.
+  virtual void add_dashpots(const std::shared_ptr<const SpringNetwork>& network,
+                            std::span<const CentralSpring> kinds, ConstVectors x, std::size_t first) = 0;
+
+  /// Returns the blocks of a pattern, to which potentials add; all zero at the first request. The sum must be
+  /// symmetric and, with the masses, positive definite.
+  virtual PairBlocks pair_blocks(const std::shared_ptr<const SymmetricPattern>& pattern,
+                                 std::size_t first) = 0;
+
+  /// Returns `terms` new terms with `weights` weights in all between `count` vertices, each of which is to be
+  /// set. Held vertices are left out by the potential.
+  virtual RelativeTerms relative_terms(std::size_t first, std::size_t count, std::size_t terms,
+                                       std::size_t weights) = 0;
+
+  /// Returns the multiples of the identity on `count` vertices, to which potentials add.
+  virtual std::span<float> identity(std::size_t first, std::size_t count) = 0;
+
+  virtual void add_rank_one(RankOneTerm term, std::size_t first) = 0;
+
+  /// Adds a potential by its product in double and its diagonal blocks: the last resort, as every iteration
+  /// of the linear solver computes from x, which is kept by reference.
+  virtual void add_general(const Potential& potential, std::size_t first, ConstVectors x) = 0;
+};
+
+}  // namespace muslin

@@ -1,0 +1,71 @@
+// Linearization as the sink of Hessians: rank-one terms and general potentials against dense matrices.
+#include "muslin/solver/linearization.hpp"
+
+#include "support/linearized_product.hpp"
+#include "support/potential_battery.hpp"
+#include <gtest/gtest.h>
+
+namespace muslin {
+namespace {
+
+constexpr std::size_t count = 40, first = 7;
+
+struct System {
+  std::vector<double> masses = std::vector<double>(count, 0.5);
+  std::vector<std::uint8_t> fixed = std::vector<std::uint8_t>(count, 0);
+  RankOneTerm term{3.0, {0, 4, 5, 20, 31}, test::random_vectors(5, 1, 2)};
+  Linearization h;
+
+  void add() {
+    h.reset(masses, fixed, 1);
+    h.add_rank_one(term, first);
+    h.finish();
+  }
+  double along(ConstVectors p) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < term.vertices.size(); ++i)
+      sum += term.gradients[i].dot(p[first + static_cast<std::size_t>(term.vertices[i])]);
+    return sum;
+  }
+};
+
+TEST(Linearization, RankOneTermMultipliesAsItsDyad) {
+  System system;
+  system.add();
+  ASSERT_TRUE(system.h.has_remainder());
+  const std::vector<Vec3> p = test::random_vectors(count, 1, 3);
+  std::vector<Vec3> expected = p;
+  for (Vec3& v : expected) v *= 0.5;
+  for (std::size_t i = 0; i < system.term.vertices.size(); ++i)
+    expected[first + static_cast<std::size_t>(system.term.vertices[i])] +=
+        3 * system.along(p) * system.term.gradients[i];
+  const std::vector<Vec3> product = test::product(system.h, p);
+  for (std::size_t v = 0; v < count; ++v) EXPECT_LE((product[v] - expected[v]).norm(), 1e-5) << v;
+}
+
+TEST(Linearization, RankOneTermHasTheDiagonalBlocksOfItsDyad) {
+  System system;
+  system.add();
+  const Floats u = system.h.remainder_upper().data(), l = system.h.remainder_lower().data();
+  for (std::size_t i = 0; i < system.term.vertices.size(); ++i) {
+    const std::size_t v = first + static_cast<std::size_t>(system.term.vertices[i]);
+    const Mat3 block = 3 * system.term.gradients[i] * system.term.gradients[i].transpose();
+    EXPECT_NEAR(u.x[v], block(0, 0), 1e-5);
+    EXPECT_NEAR(u.y[v], block(0, 1), 1e-5);
+    EXPECT_NEAR(u.z[v], block(0, 2), 1e-5);
+    EXPECT_NEAR(l.x[v], block(1, 1), 1e-5);
+    EXPECT_NEAR(l.y[v], block(1, 2), 1e-5);
+    EXPECT_NEAR(l.z[v], block(2, 2), 1e-5);
+  }
+  EXPECT_EQ(u.x[0], 0);
+}
+
+TEST(Linearization, RankOneTermOfNegativeFactorIsLeftOut) {
+  System system;
+  system.term.factor = -1;
+  system.add();
+  EXPECT_FALSE(system.h.has_remainder());
+}
+
+}  // namespace
+}  // namespace muslin
