@@ -6,6 +6,7 @@
 #include "support/sheet.hpp"
 #include <gtest/gtest.h>
 
+#include "muslin/energy/shell_pattern.hpp"
 #include "muslin/solver/symmetric_matrix.hpp"
 
 namespace muslin {

@@ -24,6 +24,12 @@ inline constexpr int element_lanes = 8;
 template <int N>
 using Batch = double[N][3][element_lanes];
 
+/// How much of the masses a stiffness may use: see Stiffness::bounded.
+struct MassBound {
+  double scale = 1;
+  double held[element_lanes] = {};  ///< by lane [kg]
+};
+
 template <int N>
 class ElementSlabs {
  public:
@@ -32,12 +38,14 @@ class ElementSlabs {
     int begin = 0, owned_end = 0, end = 0;  ///< entries
   };
 
-  /// `vertex_count` is that of the body; elements index its vertices.
-  ElementSlabs(const std::vector<std::array<int, N>>& elements, std::size_t vertex_count) {
+  /// `vertex_count` is that of the body; elements index its vertices. A slab has at least `smallest`
+  /// vertices.
+  ElementSlabs(const std::vector<std::array<int, N>>& elements, std::size_t vertex_count, int smallest = 1) {
     const int count = static_cast<int>(vertex_count);
     // Slabs of equal size. Smaller ones would have more elements between them.
-    const int slabs = std::max({1, std::min(8, count / 640), count / 4096});
-    const int size = std::max(1, (count + slabs - 1) / slabs);
+    int slabs = std::max({1, std::min(8, count / 640), count / 4096});
+    const int size = std::max(smallest, (count + slabs - 1) / slabs);
+    slabs = std::max(1, (count + size - 1) / size);
     std::vector<std::vector<int>> owned(static_cast<std::size_t>(slabs)), borrowed = owned;
     for (std::size_t e = 0; e < elements.size(); ++e) {
       std::array<int, N> at = elements[e];

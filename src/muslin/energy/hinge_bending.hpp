@@ -13,10 +13,13 @@
 // ∇θ∇θᵀ. A triangle without area has no bending direction and exerts no force.
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "muslin/energy/element_slabs.hpp"
-#include "muslin/energy/shell_energy.hpp"
+#include "muslin/energy/elements.hpp"
+#include "muslin/energy/hinge_law.hpp"
+#include "muslin/energy/hinge_stencil.hpp"
+#include "muslin/energy/shell_pattern.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
@@ -31,24 +34,20 @@ struct BendingModuli {
 /// Returns the least rigidity at 45° for which no direction between has a negative one: (√warp − √weft)²/4.
 double lowest_bias(double warp, double weft);
 
-class HingeBending : public ShellEnergy {
+/// Returns k of every hinge [N·m]. Errors: usage, if a modulus is negative.
+std::vector<double> hinge_stiffnesses(const Shell& shell, const BendingModuli& moduli);
+
+extern template class Elements<HingeStencil, HingeLaw>;
+
+class HingeBending : public Elements<HingeStencil, HingeLaw> {
  public:
   /// `pattern` is the shell's block_pattern, or null.
   HingeBending(const Shell& shell, const BendingModuli& moduli,
                std::shared_ptr<const SymmetricPattern> pattern = nullptr);
 
-  double value(ConstVectors x) const override;
-  void add_gradient(ConstVectors x, Vectors g) const override;
-  double add_gradient_and_value(ConstVectors x, Vectors g) const override;
-  void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
-  void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
-  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
-                            PairBlocks blocks) const override;
-
  private:
-  ElementSlabs<4> slabs_;
-  std::vector<ElementSlabs<4>::Slots> slots_;  // by entry: the block of each pair of corners
-  std::vector<double> stiffness_, angle_;      // by entry: k [N·m] and θ₀
+  HingeBending(std::shared_ptr<const Slabs> slabs, const Shell& shell, const std::vector<double>& stiffness,
+               std::shared_ptr<const SymmetricPattern> pattern);
 };
 
 }  // namespace muslin

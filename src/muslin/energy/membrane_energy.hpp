@@ -15,12 +15,13 @@
 // of the masses holds. docs/theory/shells.md.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "muslin/energy/element_slabs.hpp"
-#include "muslin/energy/shell_energy.hpp"
+#include "muslin/energy/elements.hpp"
+#include "muslin/energy/membrane_law.hpp"
+#include "muslin/energy/shell_pattern.hpp"
 #include "muslin/energy/triangle_stencil.hpp"
 #include "muslin/shell/shell.hpp"
 
@@ -34,31 +35,20 @@ struct MembraneModuli {
   double poisson = 0;  ///< ν, the geometric mean of the two, −1 < ν < 1
 };
 
-class MembraneEnergy : public ShellEnergy {
+extern template class Elements<TriangleStencil, MembraneLaw>;
+
+class MembraneEnergy : public Elements<TriangleStencil, MembraneLaw> {
  public:
-  /// `pattern` is the shell's block_pattern, or null.
+  /// `pattern` is the shell's block_pattern, or null. Errors: usage, if a modulus is out of its range.
   MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
                  std::shared_ptr<const SymmetricPattern> pattern = nullptr);
-
-  double value(ConstVectors x) const override;
-  void add_gradient(ConstVectors x, Vectors g) const override;
-  double add_gradient_and_value(ConstVectors x, Vectors g) const override;
-  void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
-  void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
-  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
-                            PairBlocks blocks) const override;
-
-  struct Constants {
-    double c11 = 0, c12 = 0, c22 = 0, g = 0;  ///< [N/m]
-  };
+  /// The same with moduli by triangle, #T.
+  MembraneEnergy(const Shell& shell, std::span<const MembraneModuli> moduli,
+                 std::shared_ptr<const SymmetricPattern> pattern = nullptr);
 
  private:
-  Constants constants_;
-  ElementSlabs<3> slabs_;
-  std::vector<ElementSlabs<3>::Slots> slots_;  // by entry: the block of each pair of corners
-  TriangleRests rests_;
-  std::vector<std::array<double, 3>> mass_shares_;  // by entry: of the corners' masses
-  std::vector<double> stiffness_;                   // by entry: trace of the material blocks at rest [N/m]
+  MembraneEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
+                 const std::vector<PlaneModuli>& moduli, std::shared_ptr<const SymmetricPattern> pattern);
 };
 
 }  // namespace muslin

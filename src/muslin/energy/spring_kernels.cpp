@@ -6,6 +6,7 @@
 
 #include "muslin/core/buffer.hpp"
 #include "muslin/core/vector_code.hpp"
+#include "muslin/energy/spring_law.hpp"
 
 namespace muslin {
 namespace {
@@ -18,45 +19,6 @@ constexpr std::array<float, max_springs> ones = [] {
 
 const float* weights_of(const SpringType& type) { return type.weight != nullptr ? type.weight : ones.data(); }
 
-// The laws: the factor f of the force f v, and the energy w.
-
-struct Force {
-  double f, w;
-};
-
-/// v = z.
-MUSLIN_INLINE Force spring_law(double k, double rest, double least, double zx, double zy, double zz) {
-  const double length = std::sqrt(zx * zx + zy * zy + zz * zz);
-  const double stretch = length - rest;
-  const double pull = k * stretch;
-  const double f = pull / length;
-  return {length > least ? f : 0.0, 0.5 * pull * stretch};
-}
-
-/// v = z.
-MUSLIN_INLINE Force dashpot_law(double k, double least_square, double zx, double zy, double zz, double dx,
-                                double dy, double dz) {
-  const double square = zx * zx + zy * zy + zz * zz;
-  const double along = zx * dx + zy * dy + zz * dz;
-  // Divisions are unconditional, or the loop would not vectorise.
-  const double directed = square > least_square ? 1.0 : 0.0;
-  const double f = directed * k * along / (square + (1.0 - directed));
-  return {f, 0.5 * f * along};
-}
-
-struct Product {
-  double z, d;  // B d = z z + d d
-};
-MUSLIN_INLINE Product product_law(double k, double rest, double least, double zx, double zy, double zz,
-                                  double dx, double dy, double dz) {
-  const double square = zx * zx + zy * zy + zz * zz;
-  const double length = std::sqrt(square);
-  const double along = zx * dx + zy * dy + zz * dz;
-  const double ratio = rest / length;
-  const double turn = k * ratio * along / square;
-  return {length > least ? turn : 0.0, length > least ? k * (1 - ratio) : k};
-}
-
 // Each kernel twice: `apart` adds to both ends, none of which is another spring's other end; `buffered`
 // leaves the forces in f, for all other cases.
 
@@ -66,7 +28,8 @@ MUSLIN_VECTOR_CODE void spring_forces_apart(double k, double rest, const float* 
   MUSLIN_INDEPENDENT
   for (int i = 0; i < n; ++i) {
     const double zx = b.x[i] - a.x[i], zy = b.y[i] - a.y[i], zz = b.z[i] - a.z[i];
-    const Force force = spring_law(k * static_cast<double>(weight[i]), rest, least, zx, zy, zz);
+    const SpringLaw::Force force =
+        SpringLaw::force(k * static_cast<double>(weight[i]), rest, least, zx, zy, zz);
     w[i] += force.w;
     const double fx = force.f * zx, fy = force.f * zy, fz = force.f * zz;
     y_a.x[i] -= fx, y_a.y[i] -= fy, y_a.z[i] -= fz;
@@ -79,7 +42,8 @@ MUSLIN_VECTOR_CODE void spring_forces_buffered(double k, double rest, const floa
   MUSLIN_INDEPENDENT
   for (int i = 0; i < n; ++i) {
     const double zx = b.x[i] - a.x[i], zy = b.y[i] - a.y[i], zz = b.z[i] - a.z[i];
-    const Force force = spring_law(k * static_cast<double>(weight[i]), rest, least, zx, zy, zz);
+    const SpringLaw::Force force =
+        SpringLaw::force(k * static_cast<double>(weight[i]), rest, least, zx, zy, zz);
     w[i] += force.w;
     f.x[i] = force.f * zx, f.y[i] = force.f * zy, f.z[i] = force.f * zz;
   }
@@ -89,9 +53,7 @@ MUSLIN_VECTOR_CODE void spring_energies(double k, double rest, const float* weig
   MUSLIN_INDEPENDENT
   for (int i = 0; i < n; ++i) {
     const double zx = b.x[i] - a.x[i], zy = b.y[i] - a.y[i], zz = b.z[i] - a.z[i];
-    const double stretch = std::sqrt(zx * zx + zy * zy + zz * zz) - rest;
-    const double pull = k * static_cast<double>(weight[i]) * stretch;
-    w[i] += 0.5 * pull * stretch;
+    w[i] += SpringLaw::energy(k * static_cast<double>(weight[i]), rest, zx, zy, zz);
   }
 }
 
@@ -103,7 +65,8 @@ MUSLIN_VECTOR_CODE void dashpot_forces_apart(double k, double rest, const float*
   for (int i = 0; i < n; ++i) {
     const double zx = b.x[i] - a.x[i], zy = b.y[i] - a.y[i], zz = b.z[i] - a.z[i];
     const double dx = p_b.x[i] - p_a.x[i], dy = p_b.y[i] - p_a.y[i], dz = p_b.z[i] - p_a.z[i];
-    const Force force = dashpot_law(k * static_cast<double>(weight[i]), least, zx, zy, zz, dx, dy, dz);
+    const SpringLaw::Force force =
+        DashpotLaw::force(k * static_cast<double>(weight[i]), least, zx, zy, zz, dx, dy, dz);
     w[i] += force.w;
     const double fx = force.f * zx, fy = force.f * zy, fz = force.f * zz;
     y_a.x[i] -= fx, y_a.y[i] -= fy, y_a.z[i] -= fz;
@@ -117,7 +80,8 @@ MUSLIN_VECTOR_CODE void dashpot_forces_buffered(double k, double rest, const flo
   for (int i = 0; i < n; ++i) {
     const double zx = b.x[i] - a.x[i], zy = b.y[i] - a.y[i], zz = b.z[i] - a.z[i];
     const double dx = p_b.x[i] - p_a.x[i], dy = p_b.y[i] - p_a.y[i], dz = p_b.z[i] - p_a.z[i];
-    const Force force = dashpot_law(k * static_cast<double>(weight[i]), least, zx, zy, zz, dx, dy, dz);
+    const SpringLaw::Force force =
+        DashpotLaw::force(k * static_cast<double>(weight[i]), least, zx, zy, zz, dx, dy, dz);
     w[i] += force.w;
     f.x[i] = force.f * zx, f.y[i] = force.f * zy, f.z[i] = force.f * zz;
   }
@@ -129,7 +93,7 @@ MUSLIN_VECTOR_CODE void dashpot_energies(double k, double rest, const float* wei
   for (int i = 0; i < n; ++i) {
     const double zx = b.x[i] - a.x[i], zy = b.y[i] - a.y[i], zz = b.z[i] - a.z[i];
     const double dx = p_b.x[i] - p_a.x[i], dy = p_b.y[i] - p_a.y[i], dz = p_b.z[i] - p_a.z[i];
-    w[i] += dashpot_law(k * static_cast<double>(weight[i]), least, zx, zy, zz, dx, dy, dz).w;
+    w[i] += DashpotLaw::force(k * static_cast<double>(weight[i]), least, zx, zy, zz, dx, dy, dz).w;
   }
 }
 
@@ -140,7 +104,8 @@ MUSLIN_VECTOR_CODE void spring_products_buffered(double k, double rest, const fl
   for (int i = 0; i < n; ++i) {
     const double zx = b.x[i] - a.x[i], zy = b.y[i] - a.y[i], zz = b.z[i] - a.z[i];
     const double dx = p_b.x[i] - p_a.x[i], dy = p_b.y[i] - p_a.y[i], dz = p_b.z[i] - p_a.z[i];
-    const Product c = product_law(k * static_cast<double>(weight[i]), rest, least, zx, zy, zz, dx, dy, dz);
+    const SpringLaw::Product c =
+        SpringLaw::product(k * static_cast<double>(weight[i]), rest, least, zx, zy, zz, dx, dy, dz);
     f.x[i] = c.z * zx + c.d * dx, f.y[i] = c.z * zy + c.d * dy, f.z[i] = c.z * zz + c.d * dz;
   }
 }

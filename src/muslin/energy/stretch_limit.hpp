@@ -26,65 +26,36 @@
 // docs/theory/shells.md.
 #pragma once
 
-#include <vector>
+#include <memory>
 
-#include "muslin/energy/element_slabs.hpp"
-#include "muslin/energy/shell_energy.hpp"
+#include "muslin/energy/elements.hpp"
+#include "muslin/energy/stretch_limit_law.hpp"
 #include "muslin/energy/triangle_stencil.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
-
-/// ψ.
-class StretchBarrier {
- public:
-  /// s₁ > 1.
-  explicit StretchBarrier(double limit);
-
-  struct Law {
-    double value = 0, slope = 0, curvature = 0;  ///< ψ, ψ', ψ''
-  };
-  Law at(double stretch) const;
-
-  double onset() const { return onset_; }
-  double limit() const { return limit_; }
-
- private:
-  Law barrier(double depth) const;  // at u < 1
-
-  double limit_, onset_, width_;
-  double stiff_;  // the stretch where the parabola begins
-  Law there_;
-};
 
 /// Returns κ [N/m] for a shell of this membrane stiffness [N/m], mass [kg] and mean edge h [m]: twice the
 /// larger of the first and m g/(h (s₁ − 1)). If one vertex carries all the weight, the tension is m g/h; the
 /// limit is reached at 4.4 times that for any fabric. g is 9.81 m/s² in every scene.
 double stretch_limit_stiffness(double membrane, double mass, double mean_edge, double limit);
 
-class StretchLimitEnergy : public ShellEnergy {
+extern template class Elements<TriangleStencil, StretchLimitLaw>;
+
+class StretchLimitEnergy : public Elements<TriangleStencil, StretchLimitLaw> {
  public:
-  /// limit > 1, stiffness κ ≥ 0 [N/m]; `pattern` is the shell's block_pattern, or null.
+  /// limit > 1, stiffness κ ≥ 0 [N/m]; `pattern` is the shell's block_pattern, or null. The material kind of
+  /// stiffness is that of stretch alone.
   StretchLimitEnergy(const Shell& shell, double limit, double stiffness,
                      std::shared_ptr<const SymmetricPattern> pattern = nullptr);
-
-  double value(ConstVectors x) const override;
-  void add_gradient(ConstVectors x, Vectors g) const override;
-  double add_gradient_and_value(ConstVectors x, Vectors g) const override;
-  /// The material kind is that of stretch alone.
-  void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
-  void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
-  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
-                            PairBlocks blocks) const override;
 
   const StretchBarrier& barrier() const { return barrier_; }
 
  private:
+  StretchLimitEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell, const StretchBarrier& barrier,
+                     double stiffness, std::shared_ptr<const SymmetricPattern> pattern);
+
   StretchBarrier barrier_;
-  double stiffness_;
-  ElementSlabs<3> slabs_;
-  std::vector<ElementSlabs<3>::Slots> slots_;  // by entry: the block of each pair of corners
-  TriangleRests rests_;
 };
 
 }  // namespace muslin

@@ -1,52 +1,55 @@
-// Provides the common part of energies of F = [a, b], the 3 by 2 deformation gradient of a triangle: F from
-// the corners of a batch of triangles, forces on the corners from those conjugate to a and b, and the
-// stiffness
+// TriangleStencil is a triangle with the deformation gradient F = [a, b], 3 by 2: a and b are the deformed
+// unit vectors of warp and weft. Its measure is the metric FᵀF, so that no law can resist rigid motions. Laws
+// give
 //
-//   d²W = A (C₁₁ (a·da)² + 2 C₁₂ (a·da)(b·db) + C₂₂ (b·db)² + G (a·db + b·da)²)
-//       + S_uu da·da + S_vv db·db + 2 S_uv da·db,
+//   energy       A ψ
+//   stress       A S = A ∂ψ/∂E in (warp, weft), E = ½ (FᵀF − 1): dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db
+//   + b·da)) moduli       C₁₁, C₁₂, C₂₂ and G [N/m] in
 //
-// S times the area A, as a product, as diagonal blocks and as a matrix. `Moduli` gives C₁₁, C₁₂, C₂₂ and G
-// [N/m] of a lane.
+//     d²W = A (C₁₁ (a·da)² + 2 C₁₂ (a·da)(b·db) + C₂₂ (b·db)² + G (a·db + b·da)²)
+//         + A (S_uu da·da + S_vv db·db + 2 S_uv da·db),
+//
+// in (warp, weft) or, with `principal`, in the directions of the principal stretches, along with S there. A
+// law with `excess` stores no energy where that is not positive. See membrane_law.hpp and
+// stretch_limit_law.hpp.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "muslin/core/vector_code.hpp"
+#include "muslin/energy/element_energy.hpp"
 #include "muslin/energy/element_slabs.hpp"
-#include "muslin/potential/hessian_sink.hpp"
+#include "muslin/energy/law.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
+
+/// FᵀF in (warp, weft).
+struct Metric {
+  double aa, bb, ab;
+};
+/// A symmetric stress in a plane.
+struct PlaneStress {
+  double uu, vv, uv;
+};
+struct PlaneModuli {
+  double c11, c12, c22, g;
+};
+/// Of a law in principal directions: at half the angle of this cosine and sine from warp.
+struct PrincipalStiffness {
+  double cosine, sine;
+  PlaneModuli moduli;
+  PlaneStress stress;
+};
 
 /// Rest data of a batch of triangles.
 struct TriangleRest {
   const double *d00, *d10, *d01, *d11, *area;
 };
-
-/// Rest data by entry: the inverse rest edges (00, 10, 01, 11) [1/m] and the area [m²].
-class TriangleRests {
- public:
-  TriangleRests(const ElementSlabs<3>& slabs, const Shell& shell) {
-    for (std::size_t i = 0; i < 4; ++i)
-      rest_[i] = slabs.by_entry<double>([&](std::size_t t) { return shell.inverses[t].data()[i]; });
-    rest_[4] = slabs.by_entry<double>([&](std::size_t t) { return shell.areas[t]; });
-  }
-  TriangleRest at(int first) const {
-    return {rest_[0].data() + first, rest_[1].data() + first, rest_[2].data() + first,
-            rest_[3].data() + first, rest_[4].data() + first};
-  }
-
- private:
-  std::vector<double> rest_[5];
-};
-
-inline std::vector<std::array<int, 3>> corners_of(const Shell& shell) {
-  std::vector<std::array<int, 3>> corners;
-  for (const Vec3i& t : shell.triangles) corners.push_back({t[0], t[1], t[2]});
-  return corners;
-}
 
 /// By axis and lane.
 using LaneVectors = double[3][element_lanes];
@@ -202,5 +205,247 @@ MUSLIN_INLINE void add_block_rows(const BlockFactors& f, int l, unsigned rows,
     }
   }
 }
+
+/// Replaces the stress by its positive semidefinite part: with eigenvalues m ± r its deviator is scaled and
+/// its mean moved so that they become max(m ± r, 0).
+MUSLIN_INLINE void cut_compression(double* suu, double* svv, double* suv) {
+  for (int l = 0; l < element_lanes; ++l) {
+    const double mean = 0.5 * (suu[l] + svv[l]), half = 0.5 * (suu[l] - svv[l]), shear = suv[l];
+    const double r = std::sqrt(half * half + shear * shear);
+    const double high = mean + r > 0 ? mean + r : 0, low = mean - r > 0 ? mean - r : 0;
+    const double scale = r > 0 ? 0.5 * (high - low) / r : 0;
+    suu[l] = 0.5 * (high + low) + scale * half;
+    svv[l] = 0.5 * (high + low) - scale * half;
+    suv[l] = scale * shear;
+  }
+}
+
+/// Keeps the positive part of the stress. Scales the negative part N, times the area, so that it takes at
+/// most `held` [kg] from the masses. For a motion p along one axis, with b the gradients of the corners'
+/// shape functions and N = Σ sᵢ qᵢqᵢᵀ,
+///
+///   scale Σ |sᵢ| (∇p·qᵢ)² ≤ scale Σ |sᵢ| Σ_c (b_c·qᵢ)² |p|² = −scale N : (Σ_c b_c b_cᵀ) |p|².
+MUSLIN_INLINE void bound_compression(const TriangleRest& rest, double scale, const double* held,
+                                     StrainedTriangles& s) {
+  constexpr int lanes = element_lanes;
+  double uu[lanes], vv[lanes], uv[lanes];
+  for (int l = 0; l < lanes; ++l) uu[l] = s.suu[l], vv[l] = s.svv[l], uv[l] = s.suv[l];
+  cut_compression(s.suu, s.svv, s.suv);
+  for (int l = 0; l < lanes; ++l) {
+    const double nuu = uu[l] - s.suu[l], nvv = vv[l] - s.svv[l], nuv = uv[l] - s.suv[l];
+    const double u1 = rest.d00[l], u2 = rest.d10[l], v1 = rest.d01[l], v2 = rest.d11[l];
+    const double u0 = -(u1 + u2), v0 = -(v1 + v2);
+    const double buckling =
+        -scale * (nuu * (u0 * u0 + u1 * u1 + u2 * u2) + nvv * (v0 * v0 + v1 * v1 + v2 * v2) +
+                  2 * nuv * (u0 * v0 + u1 * v1 + u2 * v2));
+    const double share = buckling > held[l] ? held[l] / buckling : 1;
+    s.suu[l] += share * nuu;
+    s.svv[l] += share * nvv;
+    s.suv[l] += share * nuv;
+  }
+}
+
+MUSLIN_INLINE Metric metric(const LaneVectors& a, const LaneVectors& b, int l) {
+  return {a[0][l] * a[0][l] + a[1][l] * a[1][l] + a[2][l] * a[2][l],
+          b[0][l] * b[0][l] + b[1][l] * b[1][l] + b[2][l] * b[2][l],
+          a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l]};
+}
+
+/// c = cos and s = sin of half the angle.
+MUSLIN_INLINE void halve_angle(double cosine, double sine, double& c, double& s) {
+  if (cosine >= 0) {
+    c = std::sqrt(0.5 * (1 + cosine));
+    s = 0.5 * sine / c;
+  } else {
+    s = std::copysign(std::sqrt(0.5 * (1 - cosine)), sine);
+    c = 0.5 * sine / s;
+  }
+}
+
+class TriangleStencil {
+ public:
+  static constexpr int corners = 3;
+
+  TriangleStencil(const ElementSlabs<3>& slabs, const Shell& shell);
+  TriangleRest at(int first) const {
+    return {rest_[0].data() + first, rest_[1].data() + first, rest_[2].data() + first,
+            rest_[3].data() + first, rest_[4].data() + first};
+  }
+
+  /// Lets compressed triangles of these moduli (by element) use masses: Stiffness::bounded. Without it they
+  /// use none.
+  void use_masses(const ElementSlabs<3>& slabs, const Shell& shell, const std::vector<PlaneModuli>& moduli);
+  /// Finds the masses that a batch may use.
+  void find_held(int first, int count, std::span<const double> masses,
+                 const std::vector<std::array<int, 3>>& vertices, MassBound& bound) const;
+
+  /// A stiffness in the frame of the law: turned data and moduli only where the law is principal.
+  template <class Law>
+  struct Stiff {
+    StrainedTriangles strained;
+  };
+  template <class Law>
+    requires(Law::principal)
+  struct Stiff<Law> {
+    StrainedTriangles strained;
+    double d00[element_lanes], d10[element_lanes], d01[element_lanes], d11[element_lanes];
+    double along[2][element_lanes], across[2][element_lanes];  // C₁₁, C₂₂; C₁₂, G
+    MUSLIN_INLINE double c11(int l) const { return along[0][l]; }
+    MUSLIN_INLINE double c22(int l) const { return along[1][l]; }
+    MUSLIN_INLINE double c12(int l) const { return across[0][l]; }
+    MUSLIN_INLINE double g(int l) const { return across[1][l]; }
+    TriangleRest turned(const TriangleRest& rest) const { return {d00, d10, d01, d11, rest.area}; }
+  };
+
+  template <class Law>
+  MUSLIN_VECTOR_CODE static bool energies(const LawLanes<Law>& law, const TriangleRest& rest,
+                                          const Batch<3>& x, double* w) {
+    LaneVectors a, b;
+    along_threads(rest, x, a, b);
+    if (!stores_energy(law, a, b)) return false;
+    find_energies(law, rest, a, b, w);
+    return true;
+  }
+
+  template <class Law>
+  MUSLIN_VECTOR_CODE static bool forces(const LawLanes<Law>& law, const TriangleRest& rest, const Batch<3>& x,
+                                        Batch<3>& force, double* w) {
+    StrainedTriangles s;
+    along_threads(rest, x, s.a, s.b);
+    if (!stores_energy(law, s.a, s.b)) return false;
+    find_stress(law, rest, s);
+    find_energies(law, rest, s.a, s.b, w);
+    stress_to_corners(rest, s, force);
+    return true;
+  }
+
+  template <class Law>
+  MUSLIN_VECTOR_CODE static bool stiffen(Stiffness kind, const LawLanes<Law>& law, const TriangleRest& rest,
+                                         const MassBound& bound, const Batch<3>& x, Stiff<Law>& out) {
+    StrainedTriangles& s = out.strained;
+    along_threads(rest, x, s.a, s.b);
+    if (!stores_energy(law, s.a, s.b)) return false;
+    if constexpr (Law::principal) {
+      turn(kind == Stiffness::material, law, rest, out);
+    } else {
+      find_stress(law, rest, s);
+      if (kind == Stiffness::bounded) bound_compression(rest, bound.scale, bound.held, s);
+      if (kind == Stiffness::projected) cut_compression(s.suu, s.svv, s.suv);
+      if (kind == Stiffness::material)
+        for (int l = 0; l < element_lanes; ++l) s.suu[l] = s.svv[l] = s.suv[l] = 0;
+    }
+    return true;
+  }
+
+  template <class Law>
+  MUSLIN_VECTOR_CODE static void multiply(const LawLanes<Law>& law, const TriangleRest& rest,
+                                          const Stiff<Law>& stiff, const Batch<3>& p, Batch<3>& y) {
+    if constexpr (Law::principal) {
+      stiffness_product(stiff, stiff.turned(rest), stiff.strained, p, y);
+    } else {
+      stiffness_product(OfLaw<Law>{law}, rest, stiff.strained, p, y);
+    }
+  }
+
+  template <class Law>
+  static void add_corner_block(const LawLanes<Law>& law, const TriangleRest& rest, const Stiff<Law>& stiff,
+                               int l, int corner, Mat3& block) {
+    if constexpr (Law::principal) {
+      muslin::add_corner_block(stiff, stiff.turned(rest), stiff.strained, l, corner, block);
+    } else {
+      muslin::add_corner_block(OfLaw<Law>{law}, rest, stiff.strained, l, corner, block);
+    }
+  }
+
+  template <class Law>
+  MUSLIN_VECTOR_CODE static void add_pair_blocks(const LawLanes<Law>& law, const TriangleRest& rest,
+                                                 const Stiff<Law>& stiff, double scale, int count,
+                                                 const unsigned* rows, const ElementSlabs<3>::Slots* slots,
+                                                 Float4* blocks) {
+    BlockFactors factors;
+    if constexpr (Law::principal) {
+      find_block_factors(stiff, stiff.turned(rest), stiff.strained, scale, factors);
+    } else {
+      find_block_factors(OfLaw<Law>{law}, rest, stiff.strained, scale, factors);
+    }
+    for (int l = 0; l < count; ++l) add_block_rows(factors, l, rows[l], slots[l], blocks);
+  }
+
+ private:
+  /// The moduli of a law in (warp, weft).
+  template <class Law>
+  struct OfLaw {
+    const LawLanes<Law>& law;
+    MUSLIN_INLINE double c11(int l) const { return Law::moduli(law[l]).c11; }
+    MUSLIN_INLINE double c12(int l) const { return Law::moduli(law[l]).c12; }
+    MUSLIN_INLINE double c22(int l) const { return Law::moduli(law[l]).c22; }
+    MUSLIN_INLINE double g(int l) const { return Law::moduli(law[l]).g; }
+  };
+
+  template <class Law>
+  MUSLIN_INLINE static bool stores_energy(const LawLanes<Law>& law, const LaneVectors& a,
+                                          const LaneVectors& b) {
+    if constexpr (requires(Metric m) { Law::excess(law[0], m); }) {
+      double excess[element_lanes];
+      for (int l = 0; l < element_lanes; ++l) excess[l] = Law::excess(law[l], metric(a, b, l));
+      bool any = false;
+      for (int l = 0; l < element_lanes; ++l) any |= excess[l] > 0;
+      return any;
+    }
+    return true;
+  }
+
+  template <class Law>
+  MUSLIN_INLINE static void find_energies(const LawLanes<Law>& law, const TriangleRest& rest,
+                                          const LaneVectors& a, const LaneVectors& b, double* w) {
+    double energy[element_lanes];
+    for (int l = 0; l < element_lanes; ++l) energy[l] = Law::energy(law[l], rest.area[l], metric(a, b, l));
+    for (int l = 0; l < element_lanes; ++l) w[l] = energy[l];
+  }
+
+  template <class Law>
+  MUSLIN_INLINE static void find_stress(const LawLanes<Law>& law, const TriangleRest& rest,
+                                        StrainedTriangles& s) {
+    for (int l = 0; l < element_lanes; ++l) {
+      const PlaneStress stress = Law::stress(law[l], rest.area[l], metric(s.a, s.b, l));
+      s.suu[l] = stress.uu;
+      s.svv[l] = stress.vv;
+      s.suv[l] = stress.uv;
+    }
+  }
+
+  template <class Law>
+  MUSLIN_INLINE static void turn(bool material, const LawLanes<Law>& law, const TriangleRest& rest,
+                                 Stiff<Law>& out) {
+    StrainedTriangles& s = out.strained;
+    for (int l = 0; l < element_lanes; ++l) {
+      const PrincipalStiffness p =
+          Law::principal_stiffness(law[l], rest.area[l], metric(s.a, s.b, l), material);
+      double cosine, sine;
+      halve_angle(p.cosine, p.sine, cosine, sine);
+      out.d00[l] = cosine * rest.d00[l] + sine * rest.d01[l];
+      out.d10[l] = cosine * rest.d10[l] + sine * rest.d11[l];
+      out.d01[l] = cosine * rest.d01[l] - sine * rest.d00[l];
+      out.d11[l] = cosine * rest.d11[l] - sine * rest.d10[l];
+      for (int k = 0; k < 3; ++k) {
+        const double a = s.a[k][l], b = s.b[k][l];
+        s.a[k][l] = cosine * a + sine * b;
+        s.b[k][l] = cosine * b - sine * a;
+      }
+      out.along[0][l] = p.moduli.c11, out.along[1][l] = p.moduli.c22;
+      out.across[0][l] = p.moduli.c12, out.across[1][l] = p.moduli.g;
+      s.suu[l] = p.stress.uu;
+      s.svv[l] = p.stress.vv;
+      s.suv[l] = p.stress.uv;
+    }
+  }
+
+  std::vector<double> rest_[5];  // by entry: inverse rest edges (00, 10, 01, 11) [1/m], area [m²]
+  std::vector<std::array<double, 3>> mass_shares_;  // by entry: of the corners' masses
+  std::vector<double> stiffness_;                   // by entry: trace of the material blocks at rest [N/m]
+};
+
+/// Returns the triangles' corners, as ElementSlabs takes them.
+std::vector<std::array<int, 3>> corners_of(const Shell& shell);
 
 }  // namespace muslin

@@ -80,9 +80,9 @@ class BodyMaterial {
     add("bending", bending);
     add_stiffness(*bending, 4);
     if (m.stiffness_damping > 0)
-      add("stiffness damping", std::make_shared<ShellDamping>(membrane, m.stiffness_damping));
+      add("stiffness damping", std::make_shared<ElementDamping>(membrane, m.stiffness_damping));
     if (m.bending_damping > 0)
-      add("bending damping", std::make_shared<ShellDamping>(bending, m.bending_damping));
+      add("bending damping", std::make_shared<ElementDamping>(bending, m.bending_damping));
     add_mass_damping(m.mass_damping);
   }
 

@@ -1,4 +1,4 @@
-#include "muslin/energy/shell_energy.hpp"
+#include "muslin/energy/element_energy.hpp"
 
 #include <utility>
 #include <vector>
@@ -9,7 +9,7 @@ namespace {
 /// W = ½ c (x − anchor)ᵀ K (x − anchor), K the material stiffness at `predicted`.
 class Dashpots : public Potential {
  public:
-  Dashpots(std::shared_ptr<const ShellEnergy> energy, double factor, std::vector<Vec3> anchor,
+  Dashpots(std::shared_ptr<const ElementEnergy> energy, double factor, std::vector<Vec3> anchor,
            std::vector<Vec3> predicted)
       : energy_(std::move(energy)),
         factor_(factor),
@@ -62,7 +62,7 @@ class Dashpots : public Potential {
     return y;
   }
 
-  std::shared_ptr<const ShellEnergy> energy_;
+  std::shared_ptr<const ElementEnergy> energy_;
   double factor_;
   std::vector<Vec3> anchor_;
   std::vector<Vec3> predicted_;
@@ -70,7 +70,7 @@ class Dashpots : public Potential {
 
 }  // namespace
 
-void ShellEnergy::linearize(ConstVectors x, HessianSink& into, std::size_t first) const {
+void ElementEnergy::linearize(ConstVectors x, HessianSink& into, std::size_t first) const {
   if (pattern_) {
     add_stiffness_matrix(Stiffness::bounded, x, into.scale(), into.masses().subspan(first, x.size()),
                          into.pair_blocks(pattern_, first));
@@ -79,19 +79,10 @@ void ShellEnergy::linearize(ConstVectors x, HessianSink& into, std::size_t first
   }
 }
 
-std::shared_ptr<const SymmetricPattern> block_pattern(const Shell& shell) {
-  std::vector<std::pair<int, int>> pairs;
-  for (const Vec3i& t : shell.triangles) {
-    for (int c = 0; c < 3; ++c) pairs.emplace_back(t[c], t[(c + 1) % 3]);
-  }
-  for (const Hinge& hinge : shell.hinges) pairs.emplace_back(hinge.vertices[2], hinge.vertices[3]);
-  return std::make_shared<SymmetricPattern>(std::move(pairs), shell.vertex_count());
-}
-
-ShellDamping::ShellDamping(std::shared_ptr<const ShellEnergy> energy, double beta)
+ElementDamping::ElementDamping(std::shared_ptr<const ElementEnergy> energy, double beta)
     : energy_(std::move(energy)), beta_(beta) {}
 
-std::unique_ptr<Potential> ShellDamping::potential(const StepContext& step) const {
+std::unique_ptr<Potential> ElementDamping::potential(const StepContext& step) const {
   if (beta_ == 0) return nullptr;
   std::vector<Vec3> predicted(step.positions.begin(), step.positions.end());
   for (std::size_t v = 0; v < predicted.size(); ++v)

@@ -1,5 +1,5 @@
-// Declares the interface of the energies of a shell, with four kinds of stiffness, and damping made from one
-// of them.
+// Declares the interface of elastic energies of elements, with four kinds of stiffness, and damping made from
+// one of them.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,6 @@
 #include "muslin/potential/hessian_sink.hpp"
 #include "muslin/potential/potential.hpp"
 #include "muslin/potential/symmetric_pattern.hpp"
-#include "muslin/shell/shell.hpp"
 
 namespace muslin {
 
@@ -21,12 +20,12 @@ enum class Stiffness {
   exact,      ///< both
 };
 
-/// An elastic energy of a shell. Its Hessian is exact. The matrix for the inner solver is bounded, which
+/// An elastic energy of elements. Its Hessian is exact. The matrix for the inner solver is bounded, which
 /// spares conjugate gradients and the coarse space negative curvature; without a pattern it is projected
 /// (docs/theory/shells.md).
-class ShellEnergy : public Potential {
+class ElementEnergy : public Potential {
  public:
-  explicit ShellEnergy(std::shared_ptr<const SymmetricPattern> pattern)
+  explicit ElementEnergy(std::shared_ptr<const SymmetricPattern> pattern)
       : pattern_(std::move(pattern)), projected_(*this) {}
 
   /// y += K p, K the stiffness of this kind at x, #V by 3.
@@ -42,10 +41,10 @@ class ShellEnergy : public Potential {
   }
   /// Adds `scale` K to the blocks of a matrix of pattern(); `kind` is not exact. With `bounded`, M + scale K
   /// is at least a tenth of M, the diagonal of `masses` (#V, read only then), in every direction; of the
-  /// energies of a shell only the membrane uses the masses.
+  /// laws only the membrane's uses the masses.
   virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
                                     std::span<const double> masses, PairBlocks blocks) const = 0;
-  /// Returns the shell's pattern, if given; without it the inner solver computes products from x.
+  /// Returns the pattern, if given; without it the inner solver computes products from x.
   const std::shared_ptr<const SymmetricPattern>& pattern() const { return pattern_; }
 
   void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override;
@@ -54,7 +53,7 @@ class ShellEnergy : public Potential {
   /// The same energy with the projected Hessian.
   class Projected : public Potential {
    public:
-    explicit Projected(const ShellEnergy& energy) : energy_(energy) {}
+    explicit Projected(const ElementEnergy& energy) : energy_(energy) {}
     double value(ConstVectors x) const override { return energy_.value(x); }
     void add_gradient(ConstVectors x, Vectors g) const override { energy_.add_gradient(x, g); }
     void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override {
@@ -65,29 +64,26 @@ class ShellEnergy : public Potential {
     }
 
    private:
-    const ShellEnergy& energy_;
+    const ElementEnergy& energy_;
   };
 
   std::shared_ptr<const SymmetricPattern> pattern_;
   Projected projected_;
 };
 
-/// Returns the couplings of a shell: of vertices in a triangle or a hinge.
-std::shared_ptr<const SymmetricPattern> block_pattern(const Shell& shell);
-
 /// Dashpots beside the elastic forces, Rayleigh's stiffness-proportional damping: the force −β K v with K
 /// the material stiffness at the positions predicted for the time the step's velocity belongs to
 /// (StepContext::velocity_time) and v = (x − anchor) / dt. K does not resist rigid motions, so that free fall
 /// is not damped, rotation only by the prediction's error, and W = β (x − anchor)ᵀ K (x − anchor) / (2 dt) is
 /// quadratic.
-class ShellDamping : public Load {
+class ElementDamping : public Load {
  public:
   /// beta [s] ≥ 0.
-  ShellDamping(std::shared_ptr<const ShellEnergy> energy, double beta);
+  ElementDamping(std::shared_ptr<const ElementEnergy> energy, double beta);
   std::unique_ptr<Potential> potential(const StepContext& step) const override;
 
  private:
-  std::shared_ptr<const ShellEnergy> energy_;
+  std::shared_ptr<const ElementEnergy> energy_;
   double beta_;
 };
 

@@ -1,0 +1,99 @@
+// A law says how an element resists its own measure: the metric of a triangle, the angle of a hinge, the
+// deformation of a tetrahedron. It is a struct without data:
+//
+//   Constants     doubles only, derived from the parameters once for each element
+//   parameters    what a user gives: name, unit, range, sentence
+//   energy, …     ψ and its derivatives, as the stencil of the element asks for them
+//
+// All functions are of one element and forced inline, so that the stencil's loops over lanes vectorise.
+// elements.hpp joins a law and a stencil.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "muslin/core/vector_code.hpp"
+#include "muslin/energy/element_slabs.hpp"
+
+namespace muslin {
+
+/// A parameter of a law, for schemas and messages.
+struct LawParameter {
+  std::string_view name;
+  std::string_view unit;
+  double least = 0;
+  double most = std::numeric_limits<double>::infinity();
+  bool open = false;  ///< least and most are not allowed themselves
+  std::string_view sentence;
+
+  bool allows(double value) const {
+    return open ? value > least && value < most : value >= least && value <= most;
+  }
+};
+
+/// One number of every element, by entry of ElementSlabs. Where all are equal, one batch of them is stored
+/// and read again and again.
+class LaneArray {
+ public:
+  LaneArray() = default;
+  /// `values` as of ElementSlabs::by_entry.
+  explicit LaneArray(std::vector<double> values);
+  /// The numbers of entries first, first + 1, …, for one batch.
+  const double* at(int first) const { return values_.data() + (uniform_ ? 0 : first); }
+  bool empty() const { return values_.empty(); }
+
+ private:
+  std::vector<double> values_;
+  bool uniform_ = false;
+};
+
+/// The constants of a law for one batch of elements.
+template <class Law>
+class LawLanes {
+ public:
+  using Constants = typename Law::Constants;
+  static constexpr std::size_t count = sizeof(Constants) / sizeof(double);
+  explicit LawLanes(const std::array<const double*, count>& lanes) : lanes_(lanes) {}
+  MUSLIN_INLINE Constants operator[](int l) const { return load(l, std::make_index_sequence<count>()); }
+
+ private:
+  template <std::size_t... I>
+  MUSLIN_INLINE Constants load(int l, std::index_sequence<I...>) const {
+    return Constants{lanes_[I][l]...};
+  }
+  std::array<const double*, count> lanes_;
+};
+
+/// The constants of a law for every element.
+template <class Law>
+class LawConstants {
+ public:
+  static constexpr std::size_t count = LawLanes<Law>::count;
+
+  /// constants_of(e) are those of element e.
+  template <int N, class Get>
+  LawConstants(const ElementSlabs<N>& slabs, const Get& constants_of) {
+    const auto all = slabs.template by_entry<typename Law::Constants>(constants_of);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::vector<double> values;
+      values.reserve(all.size());
+      for (const auto& constants : all) values.push_back(reinterpret_cast<const double*>(&constants)[i]);
+      values_[i] = LaneArray(std::move(values));
+    }
+  }
+
+  LawLanes<Law> at(int first) const {
+    std::array<const double*, count> lanes;
+    for (std::size_t i = 0; i < count; ++i) lanes[i] = values_[i].at(first);
+    return LawLanes<Law>(lanes);
+  }
+
+ private:
+  std::array<LaneArray, count> values_;
+};
+
+}  // namespace muslin
