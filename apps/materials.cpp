@@ -34,6 +34,10 @@ std::string page(const Material& m) {
     row("face_diagonal_modulus", m.face_diagonal_modulus, "N/m2");
     row("body_diagonal_modulus", m.body_diagonal_modulus, "N/m2");
     row("volume_modulus", m.volume_modulus, "N/m2");
+    if (m.young_modulus > 0) {
+      row("young_modulus", m.young_modulus, "Pa");
+      row("poisson", m.poisson, "");
+    }
     row("mass_damping", m.mass_damping, "1/s");
     row("stiffness_damping", m.stiffness_damping, "s");
   }
@@ -68,6 +72,10 @@ Json numbers(const Material& m) {
                        {"volume_modulus", m.volume_modulus},
                        {"mass_damping", m.mass_damping},
                        {"stiffness_damping", m.stiffness_damping}};
+    if (m.young_modulus > 0) {
+      json["lattice"]["young_modulus"] = m.young_modulus;
+      json["lattice"]["poisson"] = m.poisson;
+    }
   }
   if (m.shell) {
     json["shell"] = {{"areal_density", m.shell->areal_density},

@@ -28,6 +28,10 @@ Numbers lattice_numbers(const Material& material) {
   numbers["volume_modulus"] = material.volume_modulus;
   numbers["mass_damping"] = material.mass_damping;
   numbers["stiffness_damping"] = material.stiffness_damping;
+  if (material.young_modulus > 0) {
+    numbers["young_modulus"] = material.young_modulus;
+    numbers["poisson"] = material.poisson;
+  }
   return numbers;
 }
 

@@ -46,7 +46,7 @@ Material parse_material(std::string_view text, const std::string& file) {
   }
   if (lattice) {
     lattice->number("density", "kg/m³", Range::positive());
-    lattice->number("edge_modulus", "N/m²", Range::non_negative());
+    if (!lattice->has("young_modulus")) lattice->number("edge_modulus", "N/m²", Range::non_negative());
     read_material_keys(*lattice, material);
   }
   if (const TomlValue* reference = top.find("reference")) {

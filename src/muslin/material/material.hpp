@@ -18,12 +18,14 @@ struct Material {
   std::string name;
   std::string description;
   std::string source;                ///< source of the numbers
-  bool has_lattice = true;           ///< the next seven numbers are valid
+  bool has_lattice = true;           ///< the next nine numbers are valid
   double density = 0;                ///< [kg/m³]
   double edge_modulus = 0;           ///< [N/m²]
   double face_diagonal_modulus = 0;  ///< [N/m²]
   double body_diagonal_modulus = 0;  ///< [N/m²]
   double volume_modulus = 0;         ///< stiffness of tetrahedral volume conservation [N/m²], 0: off
+  double young_modulus = 0;          ///< E of a Neo-Hookean solid in the lattice's tetrahedra [Pa], 0: none
+  double poisson = 0.3;              ///< ν of that solid
   double mass_damping = 0;           ///< Rayleigh α [1/s]
   double stiffness_damping = 0;      ///< Rayleigh β [s]
   std::optional<ShellMaterial> shell;

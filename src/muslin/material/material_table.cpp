@@ -17,6 +17,8 @@ const Quantity quantities[] = {
     {"face_diagonal_modulus", "N/m²", &Material::face_diagonal_modulus, {0, 1e15, false}},
     {"body_diagonal_modulus", "N/m²", &Material::body_diagonal_modulus, {0, 1e15, false}},
     {"volume_modulus", "N/m²", &Material::volume_modulus, {0, 1e15, false}},
+    {"young_modulus", "Pa", &Material::young_modulus, {0, 1e15, false}},
+    {"poisson", "", &Material::poisson, {-0.99, 0.499, false}},
     {"mass_damping", "1/s", &Material::mass_damping, {0, 1e6, false}},
     {"stiffness_damping", "s", &Material::stiffness_damping, {0, 1e6, false}},
 };
@@ -37,6 +39,8 @@ void read_material_keys(const TomlTable& table, Material& material) {
     double& value = material.*quantity.member;
     value = table.number(quantity.key, quantity.unit, quantity.range, value);
   }
+  if (table.has("poisson") && material.young_modulus == 0)
+    throw table.error("poisson", "`poisson` stands without `young_modulus`", "give both");
 }
 
 }  // namespace muslin

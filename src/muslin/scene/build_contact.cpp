@@ -37,7 +37,8 @@ double lattice_stiffness(const Body& body, const BodySettings& settings) {
   const double width = body.lattice.width;
   // The springs of a sheet have the stiffness of its thickness, unless every voxel counts full.
   const bool thin = body.sheet && settings.mass == BodySettings::Mass::solid;
-  return stiffness_share * moduli.youngs * (thin ? std::min(width, body.thickness) : width);
+  return stiffness_share * (moduli.youngs + m.young_modulus) *
+         (thin ? std::min(width, body.thickness) : width);
 }
 
 class ContactBuilder {

@@ -7,6 +7,7 @@
 #include "muslin/energy/affine_body.hpp"
 #include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/neo_hookean_energy.hpp"
 #include "muslin/energy/spring_damping.hpp"
 #include "muslin/energy/spring_energy.hpp"
 #include "muslin/energy/stretch_limit.hpp"
@@ -41,28 +42,39 @@ class BodyMaterial {
     if (body_.is_shell()) {
       build_shell_energies();
     } else {
-      build_springs();
+      build_lattice_energies();
     }
     const double ratio = stiffness_.empty() ? 0 : largest_ratio(stiffness_, body_masses());
     body_.statistics.stable_step = ratio > 0 ? 2 / std::sqrt(ratio) : std::numeric_limits<double>::infinity();
   }
 
  private:
-  void build_springs() {
+  void build_lattice_energies() {
     const Material& material = settings_.material;
     const std::array moduli = {material.edge_modulus, material.face_diagonal_modulus,
                                material.body_diagonal_modulus};
-    const auto springs = std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli,
-                                                        spring_weights(body_, settings_));
-    add("springs", springs);
-    add_stiffness(*springs, 2);
+    // A solid needs no springs.
+    if (material.young_modulus == 0 || *std::max_element(moduli.begin(), moduli.end()) > 0) {
+      const auto springs = std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli,
+                                                          spring_weights(body_, settings_));
+      add("springs", springs);
+      add_stiffness(*springs, 2);
+      if (material.stiffness_damping > 0)
+        add("stiffness damping", std::make_shared<SpringDamping>(springs, material.stiffness_damping));
+    }
     if (material.volume_modulus > 0) {
       const auto volume = std::make_shared<VolumeEnergy>(with_shares(), material.volume_modulus);
       add("volume", volume);
       add_stiffness(*volume, 4);
     }
-    if (material.stiffness_damping > 0) {
-      add("stiffness damping", std::make_shared<SpringDamping>(springs, material.stiffness_damping));
+    if (material.young_modulus > 0) {
+      const auto solid = std::make_shared<NeoHookeanEnergy>(
+          with_shares(), SolidModuli{material.young_modulus, material.poisson},
+          tetrahedron_pattern(body_.lattice));
+      add("solid", solid);
+      add_stiffness(*solid, 4);
+      if (material.stiffness_damping > 0)
+        add("solid damping", std::make_shared<ElementDamping>(solid, material.stiffness_damping));
     }
     add_mass_damping(material.mass_damping);
   }

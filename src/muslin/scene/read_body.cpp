@@ -90,9 +90,15 @@ Material lattice_material(const TomlTable& table, Bracing bracing, const std::fi
     require_numbers(material, BodyModel::lattice, table.place("base"));
   } else {
     table.number("density", "kg/m³", Range::positive());
-    if (!table.has("youngs_modulus")) table.number("edge_modulus", "N/m²", Range::non_negative());
+    if (!table.has("youngs_modulus") && !table.has("young_modulus"))
+      table.number("edge_modulus", "N/m²", Range::non_negative());
     material.name = "inline";
   }
+  // A solid takes the place of the springs of `base`.
+  if (table.has("young_modulus"))
+    for (double* modulus : {&material.edge_modulus, &material.face_diagonal_modulus,
+                            &material.body_diagonal_modulus, &material.volume_modulus})
+      *modulus = 0;
   read_material_keys(table, material);
   if (table.has("youngs_modulus")) {
     read_elastic_moduli(table, bracing, material);

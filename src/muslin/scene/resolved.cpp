@@ -37,14 +37,19 @@ Json selection(const Selection& where) {
 }
 
 Json material(const Material& m) {
-  return {{"name", m.name},
-          {"density", m.density},
-          {"edge_modulus", m.edge_modulus},
-          {"face_diagonal_modulus", m.face_diagonal_modulus},
-          {"body_diagonal_modulus", m.body_diagonal_modulus},
-          {"volume_modulus", m.volume_modulus},
-          {"mass_damping", m.mass_damping},
-          {"stiffness_damping", m.stiffness_damping}};
+  Json json = {{"name", m.name},
+               {"density", m.density},
+               {"edge_modulus", m.edge_modulus},
+               {"face_diagonal_modulus", m.face_diagonal_modulus},
+               {"body_diagonal_modulus", m.body_diagonal_modulus},
+               {"volume_modulus", m.volume_modulus},
+               {"mass_damping", m.mass_damping},
+               {"stiffness_damping", m.stiffness_damping}};
+  if (m.young_modulus > 0) {
+    json["young_modulus"] = m.young_modulus;
+    json["poisson"] = m.poisson;
+  }
+  return json;
 }
 
 Json shell_material(const Material& material) {

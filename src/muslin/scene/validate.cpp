@@ -101,6 +101,9 @@ void check_lattice(const Checked& body, const BodySettings& settings) {
   body.number("face_diagonal_modulus", material.face_diagonal_modulus, 0);
   body.number("body_diagonal_modulus", material.body_diagonal_modulus, 0);
   body.number("volume_modulus", material.volume_modulus, 0);
+  body.number("young_modulus", material.young_modulus, 0);
+  if (material.young_modulus > 0 && !(material.poisson > -1 && material.poisson < 0.5))
+    body.fail("its `poisson` is not between -1 and 0.5", "give 0 to 0.49");
   body.number("mass_damping", material.mass_damping, 0);
   body.number("stiffness_damping", material.stiffness_damping, 0);
   if (settings.thickness) body.positive("thickness", *settings.thickness);

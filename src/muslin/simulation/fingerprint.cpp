@@ -51,6 +51,10 @@ std::uint64_t model_fingerprint(const Model& model) {
                                            m.stiffness_damping,
                                            static_cast<double>(body.boundary_springs)};
     hash = hash_bytes(numbers.data(), sizeof numbers, hash);
+    if (m.young_modulus > 0) {
+      const std::array<double, 2> solid = {m.young_modulus, m.poisson};
+      hash = hash_bytes(solid.data(), sizeof solid, hash);
+    }
     if (body.model == BodyModel::shell) hash = hash_bytes(&*m.shell, sizeof *m.shell, hash);
   }
   return hash;

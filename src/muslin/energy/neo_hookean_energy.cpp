@@ -1,0 +1,82 @@
+#include "muslin/energy/neo_hookean_energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "muslin/core/error.hpp"
+#include "muslin/energy/elements_methods.hpp"
+#include "muslin/lattice/springs.hpp"
+
+namespace muslin {
+
+template class Elements<TetrahedronStencil, NeoHookeanLaw>;
+
+namespace {
+
+using Tetrahedra = std::vector<std::array<int, 4>>;
+
+constexpr int reaches_per_slab = 4;  // tetrahedra between slabs are computed twice: keep them few
+
+std::shared_ptr<const ElementSlabs<4>> slabs_of(const Tetrahedra& tetrahedra, const Lattice& lattice) {
+  int reach = 1;
+  for (const auto& t : tetrahedra) {
+    const auto [least, most] = std::minmax_element(t.begin(), t.end());
+    reach = std::max(reach, *most - *least);
+  }
+  const int count = static_cast<int>(lattice.vertex_count());
+  const int smallest = std::min(reaches_per_slab * reach, std::max(1, (count + 3) / 4));
+  return std::make_shared<const ElementSlabs<4>>(tetrahedra, lattice.vertex_count(), smallest);
+}
+
+TetrahedronStencil stencil_of(const ElementSlabs<4>& slabs, const Tetrahedra& tetrahedra,
+                              const Lattice& lattice) {
+  std::vector<Mat3> inverses;
+  std::vector<double> volumes;
+  const double volume = lattice.width * lattice.width * lattice.width / 6;
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+    const auto corner = [&](std::size_t c) {
+      return lattice.vertices[static_cast<std::size_t>(tetrahedra[t][c])];
+    };
+    Mat3 edges;
+    for (int c = 0; c < 3; ++c)
+      edges.col(c) = (corner(static_cast<std::size_t>(c) + 1) - corner(0)).cast<double>();
+    // Edges of whole numbers with determinant 1 have an inverse of whole numbers.
+    inverses.emplace_back(edges.inverse().array().round() / lattice.width);
+    volumes.push_back(lattice.fill[t / 6] * volume);
+  }
+  return {slabs, inverses, volumes};
+}
+
+NeoHookeanLaw::Constants constants_of(const SolidModuli& moduli) {
+  require(NeoHookeanLaw::parameters[0].allows(moduli.young_modulus) && std::isfinite(moduli.young_modulus),
+          "Young's modulus of a solid is not positive", "give pascal");
+  require(NeoHookeanLaw::parameters[1].allows(moduli.poisson),
+          "the Poisson ratio of a solid is not between -1 and 0.5", "give 0 to 0.49");
+  return NeoHookeanLaw::constants(moduli.young_modulus, moduli.poisson);
+}
+
+}  // namespace
+
+std::shared_ptr<const SymmetricPattern> tetrahedron_pattern(const Lattice& lattice) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& t : build_tetrahedra(lattice))
+    for (std::size_t c = 0; c < 4; ++c)
+      for (std::size_t d = c + 1; d < 4; ++d) pairs.emplace_back(t[c], t[d]);
+  return std::make_shared<const SymmetricPattern>(std::move(pairs), lattice.vertex_count());
+}
+
+NeoHookeanEnergy::NeoHookeanEnergy(std::shared_ptr<const Slabs> slabs, const Tetrahedra& tetrahedra,
+                                   const Lattice& lattice, const SolidModuli& moduli,
+                                   std::shared_ptr<const SymmetricPattern> pattern)
+    : Elements(slabs, stencil_of(*slabs, tetrahedra, lattice),
+               LawConstants<NeoHookeanLaw>(*slabs, [c = constants_of(moduli)](std::size_t) { return c; }),
+               std::move(pattern)) {}
+
+NeoHookeanEnergy::NeoHookeanEnergy(const Lattice& lattice, const SolidModuli& moduli,
+                                   std::shared_ptr<const SymmetricPattern> pattern)
+    : NeoHookeanEnergy(slabs_of(build_tetrahedra(lattice), lattice), build_tetrahedra(lattice), lattice,
+                       moduli, std::move(pattern)) {}
+
+}  // namespace muslin
