@@ -46,6 +46,12 @@ class Potential {
   /// valid while `into` is used. By default a potential is added by its product.
   virtual void linearize(ConstVectors x, HessianSink& into, std::size_t first) const;
 
+  /// The part of value(x) that is lost, not stored, once a step ends at x [J]: plastic work.
+  virtual double dissipated(ConstVectors x) const {
+    (void)x;
+    return 0;
+  }
+
   /// The largest t such that moving from x by t·d stays where W is finite and safe (1 means: all the way
   /// and beyond is safe too).
   virtual double max_step(ConstVectors x, ConstVectors d) const {
@@ -60,6 +66,12 @@ class Load {
  public:
   virtual ~Load() = default;
   virtual std::unique_ptr<Potential> potential(const StepContext& step) const = 0;
+
+  /// Ends a step at x under `potential`, which this load yielded for it: writes what it remembers into
+  /// `history`, from which later steps read it.
+  virtual void end_step(const Potential& potential, ConstVectors x, History& history) const {
+    (void)potential, (void)x, (void)history;
+  }
 };
 
 }  // namespace muslin

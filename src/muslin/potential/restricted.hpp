@@ -29,9 +29,12 @@ class RestrictedPotential : public Potential {
   void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override {
     local_->linearize(part(x), into, first + first_);
   }
+  double dissipated(ConstVectors x) const override { return local_->dissipated(part(x)); }
   double max_step(ConstVectors x, ConstVectors d) const override {
     return local_->max_step(part(x), part(d));
   }
+
+  const Potential& local() const { return *local_; }
 
  private:
   template <class Span>
@@ -60,6 +63,10 @@ class RestrictedLoad : public Load {
     std::unique_ptr<Potential> local = local_->potential(body);
     if (!local) return nullptr;
     return std::make_unique<RestrictedPotential>(std::move(local), first_, count_);
+  }
+  void end_step(const Potential& potential, ConstVectors x, History& history) const override {
+    local_->end_step(static_cast<const RestrictedPotential&>(potential).local(), x.subspan(first_, count_),
+                     history);
   }
 
  private:

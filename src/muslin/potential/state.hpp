@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
+#include "muslin/potential/history.hpp"
 
 namespace muslin {
 
@@ -17,6 +18,7 @@ struct State {
   double previous_dt = 0;                 ///< length of the step that led here [s], 0 before the first
   double time = 0;                        ///< [s]
   std::int64_t step = 0;
+  History history;  ///< of the loads
 
   template <class Self, class Arrays>
   static void name_arrays(Self& self, Arrays& arrays) {
@@ -27,6 +29,7 @@ struct State {
     arrays("previous_dt", self.previous_dt);
     arrays("time", self.time);
     arrays("step", self.step);
+    History::name_arrays(self.history, arrays);
   }
 };
 
@@ -47,6 +50,7 @@ struct StepContext {
                                               ///< rigid body; empty: nowhere
   ConstVectors positions;                 ///< #V by 3, at time_begin [m]
   ConstVectors velocities;                ///< #V by 3, at time_begin [m/s]
+  const History* history = nullptr;       ///< of the loads, at time_begin; null: nothing happened before
 };
 
 }  // namespace muslin

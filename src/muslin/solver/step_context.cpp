@@ -46,6 +46,7 @@ StepContext step_context(Integrator integrator, const State& state, double dt) {
   context.length = dt;
   context.positions = state.positions;
   context.velocities = state.velocities;
+  context.history = &state.history;
   context.velocity_time = state.time + dt / 2;
   context.anchor = state.positions;
   if (b != 0) {

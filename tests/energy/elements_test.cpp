@@ -1,0 +1,195 @@
+// Every pair of law and stencil passes the same battery: one line a pair at the end.
+#include "muslin/energy/elements.hpp"
+
+#include <functional>
+#include <memory>
+
+#include "support/lattice_box.hpp"
+#include "support/linearized_product.hpp"
+#include "support/potential_battery.hpp"
+#include "support/sheet.hpp"
+#include <gtest/gtest.h>
+
+#include "muslin/energy/hinge_bending.hpp"
+#include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/neo_hookean_energy.hpp"
+#include "muslin/energy/plastic_hinges.hpp"
+#include "muslin/energy/stretch_limit.hpp"
+
+namespace muslin {
+namespace {
+
+/// An energy with its shape at rest and deformed shapes at which it stores energy.
+struct Case {
+  std::shared_ptr<const ElementEnergy> energy;
+  std::vector<Vec3> rest;
+  std::vector<std::vector<Vec3>> deformed;
+  double size = 0.1;      ///< over which W changes much [m]
+  bool majorizes = true;  ///< the projected stiffness is at least the exact one; hinges leave out ∇²θ
+};
+struct Pair {
+  std::string name;
+  std::function<Case()> make;
+};
+
+std::vector<Vec3> mapped(std::vector<Vec3> x, const Mat3& f, double noise, std::uint32_t seed = 5) {
+  const std::vector<Vec3> moves = test::random_vectors(x.size(), noise, seed);
+  for (std::size_t v = 0; v < x.size(); ++v) x[v] = f * x[v] + moves[v];
+  return x;
+}
+
+template <class Energy>
+Case of_sheet(const Energy& make, const std::vector<Mat3>& maps, double noise) {
+  const Mesh mesh = test::flat_sheet(7, 6, 0.7, 0.6, 0.2);
+  const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
+  Case c{make(shell, block_pattern(shell)), mesh.positions, {}};
+  for (const Mat3& map : maps) c.deformed.push_back(mapped(mesh.positions, map, noise));
+  return c;
+}
+
+Mat3 scaled(double x, double y, double z) { return Vec3(x, y, z).asDiagonal(); }
+
+Case membrane() {
+  return of_sheet(
+      [](const Shell& shell, auto pattern) {
+        return std::make_shared<MembraneEnergy>(shell, MembraneModuli{900, 500, 130, 0.25}, pattern);
+      },
+      {scaled(1.3, 1, 1.1), scaled(0.7, 1, 0.8)}, 0.03);
+}
+
+Case membrane_of_many_fabrics() {
+  return of_sheet(
+      [](const Shell& shell, auto pattern) {
+        std::vector<MembraneModuli> moduli;
+        for (std::size_t t = 0; t < shell.triangles.size(); ++t)
+          moduli.push_back({500 + 10.0 * static_cast<double>(t), 700, 100, 0.1});
+        return std::make_shared<MembraneEnergy>(shell, std::span<const MembraneModuli>(moduli), pattern);
+      },
+      {scaled(1.3, 1, 1.1), scaled(0.7, 1, 0.8)}, 0.03);
+}
+
+Case hinges() {
+  Case c = of_sheet(
+      [](const Shell& shell, auto pattern) {
+        return std::make_shared<HingeBending>(shell, BendingModuli{1e-4, 3e-5, 5e-5}, pattern);
+      },
+      {}, 0);
+  c.majorizes = false;
+  for (const double curvature : {0.5, 15.0})
+    c.deformed.push_back(mapped(test::rolled(c.rest, curvature), Mat3::Identity(), 0.02));
+  return c;
+}
+
+Case stretch_limit() {
+  return of_sheet([](const Shell& shell,
+                     auto pattern) { return std::make_shared<StretchLimitEnergy>(shell, 1.1, 700, pattern); },
+                  {scaled(1.07, 1, 0.9), scaled(1.3, 1, 1.2)}, 0.005);
+}
+
+/// Of a first step, bent beyond the yield angle here and there.
+Case plastic_hinges() {
+  Case c = hinges();
+  const Mesh mesh = test::flat_sheet(7, 6, 0.7, 0.6, 0.2);
+  const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
+  const PlasticHinges load("hinges", shell, {1e-4, 3e-5, 5e-5}, {0.2, 0.3}, block_pattern(shell));
+  std::shared_ptr<const Potential> energy = load.potential(StepContext());
+  c.energy = std::dynamic_pointer_cast<const ElementEnergy>(energy);
+  return c;
+}
+
+Case neo_hookean(double poisson) {
+  Lattice lattice = test::box_lattice({3, 2, 2});
+  lattice.width = 0.1;
+  for (std::size_t v = 0; v < lattice.fill.size(); ++v) lattice.fill[v] = 0.5 + 0.04 * static_cast<double>(v);
+  std::vector<Vec3> rest;
+  for (std::size_t v = 0; v < lattice.vertex_count(); ++v) rest.push_back(lattice.rest_position(v));
+  Case c{std::make_shared<NeoHookeanEnergy>(lattice, SolidModuli{3e4, poisson}, tetrahedron_pattern(lattice)),
+         rest,
+         {mapped(rest, scaled(1.3, 0.9, 1.1), 0.01), mapped(rest, scaled(0.6, 0.8, 0.7), 0.01),
+          mapped(rest, scaled(1, -0.5, 1), 0.02)}};
+  return c;
+}
+
+class ElementsBattery : public testing::TestWithParam<Pair> {};
+
+TEST_P(ElementsBattery, DerivativesSymmetryRestStateRigidMotionsAndBits) {
+  const Case c = GetParam().make();
+  for (const auto& x : c.deformed) test::expect_elastic_energy_is_sound(*c.energy, c.rest, x, c.size);
+}
+
+/// M + K as the linear system has it, with masses that hold nothing.
+std::vector<Vec3> linearized(const ElementEnergy& energy, const std::vector<Vec3>& x,
+                             const std::vector<Vec3>& p) {
+  const std::vector<double> masses(x.size(), 1e-9);
+  const std::vector<std::uint8_t> fixed(x.size(), 0);
+  Linearization h;
+  h.reset(masses, fixed, 1);
+  energy.linearize(x, h, 0);
+  h.finish();
+  return test::product(h, p);
+}
+
+TEST_P(ElementsBattery, BlocksProductsAndMatrixOfTheProjectedStiffnessAgree) {
+  const Case c = GetParam().make();
+  for (const auto& x : c.deformed) {
+    const std::vector<Vec3> p = test::random_vectors(x.size(), 1, 6);
+    std::vector<Vec3> product(x.size(), Vec3::Zero());
+    c.energy->add_stiffness_product(Stiffness::projected, x, p, product);
+    const std::vector<Vec3> matrix = linearized(*c.energy, x, p);
+    EXPECT_LE(test::norm(test::sum(matrix, -1, product)), 2e-6 * test::norm(product));
+    std::vector<Mat3> blocks(x.size(), Mat3::Zero());
+    c.energy->add_stiffness_blocks(Stiffness::projected, x, blocks);
+    for (std::size_t v = 0; v < x.size(); v += 5) {
+      for (int axis = 0; axis < 3; ++axis) {
+        std::vector<Vec3> unit(x.size(), Vec3::Zero()), column = unit;
+        unit[v][axis] = 1;
+        c.energy->add_stiffness_product(Stiffness::projected, x, unit, column);
+        EXPECT_LE((column[v] - blocks[v].col(axis)).norm(), 1e-10 * (blocks[v].norm() + 1e-12));
+      }
+    }
+  }
+}
+
+TEST_P(ElementsBattery, ProjectedStiffnessIsPositiveAndAtLeastTheExactOneButOfHinges) {
+  const Case c = GetParam().make();
+  for (const auto& x : c.deformed) {
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+      const std::vector<Vec3> p = test::random_vectors(x.size(), 1, seed);
+      const auto work = [&](Stiffness kind) {
+        std::vector<Vec3> y(x.size(), Vec3::Zero());
+        c.energy->add_stiffness_product(kind, x, p, y);
+        return test::inner(p, y);
+      };
+      const double exact = work(Stiffness::exact), projected = work(Stiffness::projected);
+      EXPECT_GE(projected, 0);
+      if (c.majorizes) {
+        EXPECT_GE(projected, exact - 1e-9 * std::abs(exact));
+      }
+      EXPECT_GE(work(Stiffness::material), 0);
+    }
+  }
+}
+
+TEST_P(ElementsBattery, MaterialStiffnessDoesNotResistTurning) {
+  const Case c = GetParam().make();
+  for (const auto& x : c.deformed) {
+    std::vector<Vec3> turning, y(x.size(), Vec3::Zero()), other = y;
+    for (const Vec3& p : x) turning.push_back(Vec3(0.3, 0.5, 0.8).cross(p));
+    c.energy->add_stiffness_product(Stiffness::material, x, turning, y);
+    const std::vector<Vec3> any = test::random_vectors(x.size(), test::norm(turning), 3);
+    c.energy->add_stiffness_product(Stiffness::material, x, any, other);
+    EXPECT_LE(test::norm(y), 1e-9 * test::norm(other));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Pairs, ElementsBattery,
+                         testing::Values(Pair{"MembraneOnTriangles", membrane},
+                                         Pair{"MembraneOfManyFabricsOnTriangles", membrane_of_many_fabrics},
+                                         Pair{"StretchLimitOnTriangles", stretch_limit},
+                                         Pair{"LinearHinges", hinges}, Pair{"PlasticHinges", plastic_hinges},
+                                         Pair{"NeoHookeanOnTetrahedra", [] { return neo_hookean(0.3); }},
+                                         Pair{"IncompressibleNeoHookean", [] { return neo_hookean(0.49); }}),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace muslin
