@@ -69,6 +69,8 @@ class Advance {
     solved.masses = model_.masses;
     solved.fixed = scratch_.fixed;
     state_.energy.enter(terms_, solved, loads, guard_ ? &guard_->last_potential() : nullptr);
+    for (std::size_t i = 0; i < loads.size(); ++i)
+      if (loads[i]) terms_.loads[i].load->end_step(*loads[i], state_.motion.positions, state_.motion.history);
     return report;
   }
 

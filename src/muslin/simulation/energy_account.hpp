@@ -26,7 +26,8 @@ struct ActingPotential {
   const Potential* potential = nullptr;
   /// Energy stored at the beginning of the step, 0 of roles that store none [J].
   double before = 0;
-  /// Energy stored at the end, if it differs from the value of the potential: contact lags some parts [J].
+  /// Energy stored at the end, if it differs from the value of the potential: contact lags some parts,
+  /// plastic work is lost [J].
   std::optional<double> after = std::nullopt;
 };
 

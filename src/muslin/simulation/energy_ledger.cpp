@@ -58,7 +58,10 @@ void EnergyLedger::enter(const Terms& acting, SolvedStep step,
       stored[slot] = begin;
     }
     if (!loads[i]) continue;
-    acts.push_back({role, loads[i].get(), stored[slot]});
+    ActingPotential act{role, loads[i].get(), stored[slot]};
+    const double lost = is_stored(role) ? loads[i]->dissipated(after) : 0;
+    if (lost != 0) act.after = loads[i]->value(after) - lost;
+    acts.push_back(act);
     slots.push_back(slot);
   }
   if (contact) acts.push_back({EnergyRole::elastic, contact, contact_energy, contact->parts(after).normal});
