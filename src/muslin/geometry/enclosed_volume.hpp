@@ -1,0 +1,62 @@
+// EnclosedVolume is the volume that a surface encloses, with its derivatives,
+//
+//   V = 1/6 Σ a·(b × c)
+//
+// over the triangles, seen from outside counter-clockwise. Holes are closed by fans about the centroid of
+// their rim, so that a surface that is nearly closed has a volume, and its rim takes part of the force on the
+// lid.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+class EnclosedVolume {
+ public:
+  /// `triangles` #T by 3 of `vertex_count` vertices, oriented alike; vertices of no triangle are left alone.
+  /// Errors: input, if an edge has more than two triangles or two that are not oriented alike.
+  EnclosedVolume(const std::vector<Vec3i>& triangles, std::size_t vertex_count);
+
+  std::size_t vertex_count() const { return vertex_count_; }
+  /// The rims of the holes, vertex by vertex, as the triangles run around them.
+  const std::vector<std::vector<int>>& holes() const { return holes_; }
+
+  /// V at x, #V by 3 [m³].
+  double value(ConstVectors x) const;
+  /// g += factor ∂V/∂x.
+  void add_gradient(ConstVectors x, double factor, Vectors g) const;
+  /// y += factor ∂²V/∂x² p.
+  void add_hessian_product(ConstVectors x, ConstVectors p, double factor, Vectors y) const;
+
+  /// An edge a → b of a triangle with corner `left`, the other side of it being `right`, either of which may
+  /// be vertex_count() + h, the centre of hole h. ∂²V/∂x_a∂x_b = [x_right − x_left]ₓ/6.
+  struct Edge {
+    int a, b, left, right;
+  };
+  const std::vector<Edge>& edges() const { return edges_; }
+  /// x and the centres of the holes.
+  std::vector<Vec3> with_centres(ConstVectors x) const;
+
+ private:
+  /// From with_centres, relative to the surface's first vertex: a sum over closed surfaces does not depend on
+  /// it.
+  std::vector<Vec3> relative(ConstVectors x) const;
+  /// to += factor × what falls on each vertex; the shares of the centres go to their rims.
+  template <class Share>
+  void add_to_vertices(double factor, const Share& share, Vectors to) const;
+
+  std::size_t vertex_count_;
+  std::vector<Vec3i> triangles_;  // with those of the fans
+  std::vector<std::vector<int>> holes_;
+  std::vector<Edge> edges_;
+  std::vector<int> first_;                    // by vertex and centre: of its corners
+  std::vector<std::array<int, 2>> opposite_;  // by corner: the next two corners of its triangle
+};
+
+}  // namespace muslin
