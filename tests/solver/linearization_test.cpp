@@ -67,5 +67,45 @@ TEST(Linearization, RankOneTermOfNegativeFactorIsLeftOut) {
   EXPECT_FALSE(system.h.has_remainder());
 }
 
+/// A chain whose blocks are those of springs and of something else, with zero rows.
+TEST(Linearization, StandInLeavesTheSystemAsItIsAndTakesItIntoTheFactorisation) {
+  constexpr int chain = 50;
+  std::vector<std::pair<int, int>> pairs;
+  for (int v = 0; v + 1 < chain; ++v) pairs.emplace_back(v, v + 1);
+  for (int v = 0; v + 2 < chain; ++v) pairs.emplace_back(v, v + 2);
+  const auto pattern = std::make_shared<const SymmetricPattern>(pairs, chain);
+  SpringNetwork springs;
+  springs.vertex_count = chain;
+  springs.runs = {{0, 0, 1, chain - 1}};
+  const auto network = std::make_shared<const SpringNetwork>(springs);
+  const std::vector<Vec3> x = test::random_vectors(chain, 1, 8), p = test::random_vectors(chain, 1, 9);
+  const std::vector<double> masses(chain, 0.1);
+  const std::vector<std::uint8_t> fixed(chain, 0);
+  std::vector<Vec3> products[2];
+  Linearization h;
+  for (const bool with : {false, true}) {
+    h.reset(masses, fixed, 1);
+    const PairBlocks blocks = h.pair_blocks(pattern, 0);
+    for (const auto& [a, b] : pairs) {
+      for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) {
+          const float value = static_cast<float>(
+              x[static_cast<std::size_t>(a)][c] * x[static_cast<std::size_t>(a)][r] + (c == r ? 2 : 0));
+          blocks.block(pattern->find(a, b))[c][r] -= value;
+          blocks.block(pattern->find(a, a))[c][r] += value;
+          blocks.block(pattern->find(b, b))[c][r] += value;
+        }
+      }
+    }
+    const CentralSpring kinds[] = {{1.5F, 0}};
+    if (with) h.stand_in(pattern, network, kinds, x, 0);
+    h.finish();
+    EXPECT_EQ(h.has_springs(), with);
+    EXPECT_EQ(h.matrices().empty(), with);
+    products[with ? 1 : 0] = test::product(h, p);
+  }
+  for (std::size_t v = 0; v < chain; ++v) EXPECT_LE((products[0][v] - products[1][v]).norm(), 3e-5) << v;
+}
+
 }  // namespace
 }  // namespace muslin

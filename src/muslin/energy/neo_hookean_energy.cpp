@@ -1,13 +1,16 @@
 #include "muslin/energy/neo_hookean_energy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "muslin/core/error.hpp"
 #include "muslin/energy/elements_methods.hpp"
 #include "muslin/lattice/springs.hpp"
+#include "muslin/material/lattice_moduli.hpp"
 
 namespace muslin {
 
@@ -72,7 +75,30 @@ NeoHookeanEnergy::NeoHookeanEnergy(std::shared_ptr<const Slabs> slabs, const Tet
                                    std::shared_ptr<const SymmetricPattern> pattern)
     : Elements(slabs, stencil_of(*slabs, tetrahedra, lattice),
                LawConstants<NeoHookeanLaw>(*slabs, [c = constants_of(moduli)](std::size_t) { return c; }),
-               std::move(pattern)) {}
+               std::move(pattern)) {
+  if (!this->pattern()) return;
+  const Springs springs = build_springs(lattice, Bracing::kuhn);
+  SpringNetwork network;
+  network.vertex_count = static_cast<int>(lattice.vertex_count());
+  for (const SpringRun& run : springs.runs) {
+    network.runs.push_back({run.direction, run.a, run.b, run.length});
+    for (int i = 0; i < run.length; ++i)
+      network.weights.push_back(springs.share[static_cast<std::size_t>(run.first + i)]);
+  }
+  network_ = std::make_shared<const SpringNetwork>(std::move(network));
+  const SpringModuli of_springs = springs_for(moduli.young_modulus, std::nullopt, Bracing::kuhn);
+  const std::array<double, 3> by_kind = {of_springs.edge, of_springs.face_diagonal, of_springs.body_diagonal};
+  for (const SpringDirection& direction : springs.directions)
+    stiffness_.push_back(lattice.width * by_kind[static_cast<std::size_t>(direction.kind)]);
+}
+
+void NeoHookeanEnergy::linearize(ConstVectors x, HessianSink& into, std::size_t first) const {
+  Elements::linearize(x, into, first);
+  if (!pattern()) return;
+  std::vector<CentralSpring> kinds;
+  for (const double k : stiffness_) kinds.push_back({static_cast<float>(into.scale() * k), 0});
+  into.stand_in(pattern(), network_, kinds, x, first);
+}
 
 NeoHookeanEnergy::NeoHookeanEnergy(const Lattice& lattice, const SolidModuli& moduli,
                                    std::shared_ptr<const SymmetricPattern> pattern)

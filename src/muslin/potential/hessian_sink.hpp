@@ -88,6 +88,13 @@ class HessianSink {
   virtual PairBlocks pair_blocks(const std::shared_ptr<const SymmetricPattern>& pattern,
                                  std::size_t first) = 0;
 
+  /// Lets springs stand for the blocks of a pattern in the preconditioner, where no other springs hold the
+  /// same vertices: the system stays the same, and is solved as fast as one of springs if their Hessian, k n
+  /// nᵀ along the directions at x, resembles the blocks. Every row of the blocks must sum to zero.
+  virtual void stand_in(const std::shared_ptr<const SymmetricPattern>& pattern,
+                        const std::shared_ptr<const SpringNetwork>& network,
+                        std::span<const CentralSpring> kinds, ConstVectors x, std::size_t first) = 0;
+
   /// Returns `terms` new terms with `weights` weights in all between `count` vertices, each of which is to be
   /// set. Held vertices are left out by the potential.
   virtual RelativeTerms relative_terms(std::size_t first, std::size_t count, std::size_t terms,

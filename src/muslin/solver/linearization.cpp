@@ -23,6 +23,8 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   scale_ = scale;
   sets_.clear();
   matrices_.clear();
+  stood_for_.clear();
+  for (const auto& stand_in : stand_ins_) stand_in->used = false;
   generals_.clear();
   rank_ones_.clear();
   relative_count_ = 0;
@@ -59,6 +61,51 @@ void Linearization::add_dashpots(const std::shared_ptr<const SpringNetwork>& net
   add_dashpot_hessian({kinds, a.weights.empty() ? nullptr : a.weights.data(), x,
                        workspace(2 * 3 * a.pattern->position_count())},
                       couplings(a.pattern, first));
+}
+
+void Linearization::stand_in(const std::shared_ptr<const SymmetricPattern>& pattern,
+                             const std::shared_ptr<const SpringNetwork>& network,
+                             std::span<const CentralSpring> kinds, ConstVectors x, std::size_t first) {
+  auto known = std::find_if(stand_ins_.begin(), stand_ins_.end(), [&](const auto& s) {
+    return s->pattern == pattern && s->network == network && s->first == first;
+  });
+  if (known == stand_ins_.end()) {
+    StandIn made;
+    made.pattern = pattern, made.network = network, made.first = first;
+    const EliminationOrder& order = *arranged(network).pattern;
+    for (const EliminationOrder::Block& block : order.blocks()) {
+      for (int l = 0; l < EliminationOrder::lanes; ++l) {
+        made.slots.push_back(-1);
+        if ((block.used >> l & 1) == 0) continue;
+        const auto position = [&](int base) { return order.vertex(static_cast<std::size_t>(base + l)); };
+        const int a = position(l < block.cut ? block.first : block.second),
+                  b = position(EliminationOrder::lanes * block.group);
+        made.slots.back() = pattern->find(std::min(a, b), std::max(a, b));
+      }
+    }
+    stand_ins_.push_back(std::make_unique<StandIn>(std::move(made)));
+    known = stand_ins_.end() - 1;
+  }
+  (*known)->kinds.assign(kinds.begin(), kinds.end());
+  (*known)->x = x;
+  (*known)->used = true;
+}
+
+void Linearization::put_stand_ins() {
+  std::erase_if(stand_ins_, [](const auto& stand_in) { return !stand_in->used; });
+  for (const auto& stand_in : stand_ins_) {
+    const std::size_t end = stand_in->first + stand_in->pattern->vertex_count();
+    const bool occupied = std::any_of(sets_.begin(), sets_.end(), [&](const SpringHessian* set) {
+      return set->first() < end &&
+             stand_in->first < set->first() + static_cast<std::size_t>(set->pattern().vertex_count());
+    });
+    if (occupied) continue;
+    add_dashpots(stand_in->network, stand_in->kinds, stand_in->x, stand_in->first);
+    SymmetricMatrix& of_pattern = matrix(stand_in->pattern, stand_in->first);
+    of_pattern.subtract(couplings(arranged(stand_in->network).pattern, stand_in->first), stand_in->slots);
+    std::erase(matrices_, &of_pattern);
+    stood_for_.push_back(&of_pattern);
+  }
 }
 
 SpringHessian& Linearization::couplings(const std::shared_ptr<const EliminationOrder>& pattern,
@@ -130,6 +177,7 @@ void Linearization::cover_gap(std::size_t begin, std::size_t end) {
 }
 
 void Linearization::finish() {
+  put_stand_ins();
   const auto by_vertex = [](const SpringHessian* p, const SpringHessian* q) {
     return p->first() < q->first();
   };
@@ -152,7 +200,8 @@ void Linearization::finish() {
                         [&](const SpringHessian* set) { return &set->pattern() == n->pattern.get(); });
   });
   std::erase_if(matrix_storage_, [&](const auto& m) {
-    return std::find(matrices_.begin(), matrices_.end(), m.get()) == matrices_.end();
+    return std::find(matrices_.begin(), matrices_.end(), m.get()) == matrices_.end() &&
+           std::find(stood_for_.begin(), stood_for_.end(), m.get()) == stood_for_.end();
   });
   for (std::size_t i = 0; i < relative_count_; ++i) relatives_[i]->finish();
   if (has_remainder()) find_remainder_diagonal();
@@ -215,6 +264,8 @@ void Linearization::project() {
 double Linearization::add_remainder_product(const Float4* p, Float4* y) {
   double sum = 0;
   for (const SymmetricMatrix* matrix : matrices_)
+    sum += matrix->add_product(p + matrix->first(), y + matrix->first());
+  for (const SymmetricMatrix* matrix : stood_for_)
     sum += matrix->add_product(p + matrix->first(), y + matrix->first());
   for (std::size_t i = 0; i < relative_count_; ++i)
     sum += relatives_[i]->add_product(p + relatives_[i]->first(), y + relatives_[i]->first());

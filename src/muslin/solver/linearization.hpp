@@ -42,6 +42,9 @@ class Linearization : public HessianSink {
   PairBlocks pair_blocks(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first) override {
     return matrix(pattern, first).blocks();
   }
+  void stand_in(const std::shared_ptr<const SymmetricPattern>& pattern,
+                const std::shared_ptr<const SpringNetwork>& network, std::span<const CentralSpring> kinds,
+                ConstVectors x, std::size_t first) override;
   RelativeTerms relative_terms(std::size_t first, std::size_t count, std::size_t terms,
                                std::size_t weights) override;
   std::span<float> identity(std::size_t first, std::size_t count) override {
@@ -70,16 +73,19 @@ class Linearization : public HessianSink {
 
   /// Returns the couplings of all vertices in ascending order, empty ones for vertices without any.
   std::span<const SpringHessian* const> sets() const { return sets_; }
+  /// Returns the block matrices, but those for which springs stand in.
   std::span<const SymmetricMatrix* const> matrices() const { return matrices_; }
   bool has_springs() const;
   const float* identity() const { return identity_.data(); }
 
   /// True if K is not zero.
   bool has_remainder() const {
-    return !matrices_.empty() || !generals_.empty() || relative_count_ > 0 || !rank_ones_.empty();
+    return !matrices_.empty() || !stood_for_.empty() || !generals_.empty() || relative_count_ > 0 ||
+           !rank_ones_.empty();
   }
-  /// Diagonal blocks of K, with the identity positive definite: xx, xy, xz of `upper` and yy, yz, zz of
-  /// `lower`, #V by 3. Relative stiffnesses are scaled down where masses would be lost to rounding.
+  /// Diagonal blocks of K but of matrices for which springs stand in, with the identity positive definite:
+  /// xx, xy, xz of `upper` and yy, yz, zz of `lower`, #V by 3. Relative stiffnesses are scaled down where
+  /// masses would be lost to rounding.
   const FloatVectors& remainder_upper() const { return upper_; }
   const FloatVectors& remainder_lower() const { return lower_; }
   /// Returns the largest trace of a diagonal block of relative stiffnesses over the vertex's part of the
@@ -106,6 +112,17 @@ class Linearization : public HessianSink {
     RankOneTerm term;
     std::size_t first;
   };
+  /// Springs in place of a matrix.
+  struct StandIn {
+    std::shared_ptr<const SymmetricPattern> pattern;
+    std::shared_ptr<const SpringNetwork> network;
+    std::vector<int> slots;  // by coupling: its block in the pattern, −1 for none
+    std::vector<CentralSpring> kinds;
+    ConstVectors x;
+    std::size_t first = 0;
+    bool used = false;  // at this x
+  };
+  void put_stand_ins();
   const Arranged& arranged(const std::shared_ptr<const SpringNetwork>& network);
   void cover_gap(std::size_t begin, std::size_t end);
   void find_remainder_diagonal();
@@ -118,6 +135,8 @@ class Linearization : public HessianSink {
   std::vector<const SpringHessian*> sets_;               // of this x
   std::vector<std::unique_ptr<SymmetricMatrix>> matrix_storage_;
   std::vector<const SymmetricMatrix*> matrices_;
+  std::vector<const SymmetricMatrix*> stood_for_;    // of this x, less the couplings that stand for them
+  std::vector<std::unique_ptr<StandIn>> stand_ins_;  // reused from step to step
   std::vector<General> generals_;
   std::vector<RankOne> rank_ones_;
   std::vector<std::unique_ptr<Arranged>> networks_;            // reused from step to step

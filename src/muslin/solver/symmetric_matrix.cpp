@@ -71,6 +71,39 @@ void SymmetricMatrix::reset(std::shared_ptr<const SymmetricPattern> pattern, std
   });
 }
 
+void SymmetricMatrix::subtract(const SpringHessian& couplings, std::span<const int> slots) {
+  constexpr int lanes = SpringHessian::lanes;
+  parallel_for(couplings.pattern().block_count(), grain, [&](std::size_t begin, std::size_t end) {
+    float sx[lanes], sy[lanes], sz[lanes], t[lanes];
+    for (std::size_t b = begin; b < end; ++b) {
+      couplings.load(b, 1, sx, sy, sz, t);
+      for (int l = 0; l < lanes; ++l) {
+        const int slot = slots[lanes * b + static_cast<std::size_t>(l)];
+        if (slot < 0) continue;
+        const Float4 s = {sx[l], sy[l], sz[l], 0};
+        Float4* const columns = block(slot);
+        columns[0] += s * sx[l] + Float4{t[l], 0, 0, 0};
+        columns[1] += s * sy[l] + Float4{0, t[l], 0, 0};
+        columns[2] += s * sz[l] + Float4{0, 0, t[l], 0};
+      }
+    }
+  });
+  parallel_for(pattern_->vertex_count(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      Float4 sum[3] = {};
+      for (int k = pattern_->first()[v] + 1; k < pattern_->first()[v + 1]; ++k)
+        for (int c = 0; c < 3; ++c) sum[c] += block(k)[c];
+      for (int m = pattern_->first_mirrored()[v]; m < pattern_->first_mirrored()[v + 1]; ++m) {
+        const Float4* const columns = block(pattern_->mirrored()[at(m)].block);
+        for (int c = 0; c < 3; ++c) sum[c] += Float4{columns[0][c], columns[1][c], columns[2][c], 0};
+      }
+      Float4* const diagonal = block(pattern_->first()[v]);
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) diagonal[c][r] = -0.5F * (sum[c][r] + sum[r][c]);
+    }
+  });
+}
+
 double SymmetricMatrix::add_product(const Float4* p, Float4* y) const {
   return parallel_sum(pattern_->vertex_count(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
     return add_rows(*pattern_, columns_.data(), p, y, begin, end);

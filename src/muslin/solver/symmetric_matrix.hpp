@@ -6,11 +6,13 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 
 #include "muslin/core/buffer.hpp"
 #include "muslin/potential/hessian_sink.hpp"
 #include "muslin/potential/symmetric_pattern.hpp"
 #include "muslin/solver/float_vectors.hpp"
+#include "muslin/solver/spring_hessian.hpp"
 
 namespace muslin {
 
@@ -28,6 +30,10 @@ class SymmetricMatrix {
   const Float4* block(int index) const { return columns_.data() + 3 * static_cast<std::size_t>(index); }
 
   PairBlocks blocks() { return {columns_.data()}; }
+
+  /// Takes central blocks B off, which add B to the diagonal and −B between two vertices; afterwards every
+  /// row sums to zero. `slots`: the block of each coupling, 16 for each block of couplings, −1 for none.
+  void subtract(const SpringHessian& couplings, std::span<const int> slots);
 
   /// y += A p on the body's vertices, three floats and a zero each, starting at the body; returns pᵀA p.
   double add_product(const Float4* p, Float4* y) const;
