@@ -2,7 +2,7 @@
 BUILD := build/release
 JOBS ?= $(shell nproc)
 
-.PHONY: build demo test test-hosts blender-addon setup setup-tests python-env clean pictures asan tsan fuzz tidy format
+.PHONY: build demo test test-hosts blender-addon setup setup-tests python-env clean pictures reference build-time asan tsan fuzz tidy format
 .DEFAULT_GOAL := build
 
 setup:            ## installs the Debian packages muslin builds on, if any is missing
@@ -36,6 +36,12 @@ asan tsan:        ## every test under a sanitizer
 test-hosts: build ## the Blender add-on as an extension of 4.2, USD and Alembic: fetches the bpy module, 520 MB, once
 	tools/test_bpy $(BUILD)/muslin
 
+reference: $(BUILD)/build.ninja   ## pages made from the public headers, in build/release/reference/html; needs doxygen
+	cmake --build $(BUILD) --target reference
+
+build-time:       ## the processor time from a bare checkout to the program
+	tools/build_time
+
 blender-addon:    ## out/muslin-blender-VERSION.zip, for Blender 3.4 and later
 	blender/package
 
@@ -49,7 +55,7 @@ fuzz:             ## every fuzzer for FUZZ_SECONDS each; inputs that fail are le
 	tests/fuzz/run build/fuzz/tests/fuzz $(FUZZ_SECONDS)
 
 tidy:             ## clang-tidy over the sources that have changed since TIDY_SINCE, or all
-	tools/tidy $(BUILD) $(TIDY_SINCE)
+	tools/tidy $(TIDY_SINCE)
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i

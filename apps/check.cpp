@@ -5,7 +5,7 @@
 #include "command.hpp"
 #include <fmt/format.h>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::app {
 

@@ -5,7 +5,7 @@
 #include "command.hpp"
 #include "progress_line.hpp"
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::app {
 

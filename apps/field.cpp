@@ -3,7 +3,7 @@
 
 #include "command.hpp"
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::app {
 

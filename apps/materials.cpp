@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::app {
 namespace {

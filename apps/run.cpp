@@ -6,7 +6,7 @@
 #include "progress_line.hpp"
 #include <fmt/format.h>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::app {
 namespace {

@@ -45,7 +45,7 @@ where = {{ plane = {{ point = [0, 0, 0], normal = [1, 0, 0], distance = 0.01 }} 
   double drop(const Simulation& simulation, int i) const { return layers / 2.0 - centre(simulation, i).y(); }
 };
 
-std::string gravity(double acceleration) {
+std::string downward(double acceleration) {
   return fmt::format("[[force]]\ntype = \"gravity\"\nacceleration = [0, {:.17g}, 0]\n", -acceleration);
 }
 
@@ -55,7 +55,7 @@ double measured_rigidity(const Experiment& experiment, const Strip& strip) {
   const double length = strip.length;
   const double slight =
       1e-4 * strip.youngs() * strip.second_moment() / (strip.weight_per_length(1) * std::pow(length, 3));
-  Simulation simulation = experiment.start(static_solve(1e-9) + strip.body() + gravity(slight));
+  Simulation simulation = experiment.start(static_solve(1e-9) + strip.body() + downward(slight));
   advance(simulation, 2);
   const int a = strip.length / 4, b = strip.length / 2, c = 3 * strip.length / 4;
   const auto shape = [&](double s) { return s * s * (s * s - 4 * length * s + 6 * length * length) / 24; };

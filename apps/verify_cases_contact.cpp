@@ -10,6 +10,8 @@
 #include "verify_referee.hpp"
 #include <fmt/format.h>
 
+#include "muslin/contact/contact_model.hpp"
+
 namespace muslin::app {
 namespace {
 

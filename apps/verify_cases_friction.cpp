@@ -11,8 +11,6 @@
 namespace muslin::app {
 namespace {
 
-constexpr double gravity = 9.8;
-
 /// A slope that rises towards −x, modelled as a level floor under rotated gravity.
 std::string slope(double degrees, double friction, int frame_rate) {
   const double angle = degrees * std::numbers::pi / 180;

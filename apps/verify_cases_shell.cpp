@@ -9,7 +9,7 @@ namespace muslin::app {
 namespace {
 
 constexpr int cells = 16;  // along either side
-constexpr double gravity = 9.8, areal_density = 0.2;
+constexpr double areal_density = 0.2;
 
 /// A sheet of 1 m by `width` in the plane y = 0 as a shell; vertex i + k (cells + 1).
 std::string sheet(double membrane, double bending) {

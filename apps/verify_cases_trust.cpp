@@ -13,8 +13,6 @@
 namespace muslin::app {
 namespace {
 
-constexpr double gravity = 9.8;
-
 const std::string weight = R"(
 [[force]]
 type = "gravity"

@@ -11,8 +11,6 @@
 namespace muslin::app {
 namespace {
 
-constexpr double gravity = 9.8;
-
 /// Largest change of the body's velocity as a whole over `frames`, by its size at the start. `axes` says
 /// which components count.
 double momentum_lost(Simulation& simulation, const std::string& body, const Vec3& axes, int frames) {

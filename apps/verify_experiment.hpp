@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::app {
+
+inline constexpr double gravity = 9.8;  ///< of scenes that state no other [m/s²]
 
 /// A temporary folder, removed with the object.
 class Experiment {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::app {
 

@@ -5,6 +5,14 @@ target_compile_options(muslin_flags INTERFACE -Wall -Wextra -Wpedantic -fno-math
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(muslin_flags INTERFACE -Wno-restrict)  # false alarms on std::string, GCC bug 105651
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Collect garbage later: a tenth less time for 200 MB more memory a job.
+  target_compile_options(muslin_flags INTERFACE --param=ggc-min-expand=200 --param=ggc-min-heapsize=400000)
+endif()
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  # False alarms on std::stable_sort of libstdc++ 12.
+  target_compile_options(muslin_flags INTERFACE -Wno-deprecated-declarations)
+endif()
 if(MUSLIN_WERROR)
   target_compile_options(muslin_flags INTERFACE -Werror)
 endif()

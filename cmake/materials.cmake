@@ -25,4 +25,4 @@ std::span<const LibraryMaterial> material_library() { return materials; }
 }  // namespace muslin
 ")
 file(COPY_FILE ${generated}.new ${generated} ONLY_IF_DIFFERENT)
-target_sources(muslin PRIVATE ${generated})
+list(APPEND edges ${generated})

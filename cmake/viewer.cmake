@@ -23,4 +23,4 @@ ${pieces}      ;
 }  // namespace muslin
 ")
 file(COPY_FILE ${generated}.new ${generated} ONLY_IF_DIFFERENT)
-target_sources(muslin PRIVATE ${generated})
+list(APPEND edges ${generated})

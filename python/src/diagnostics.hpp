@@ -5,7 +5,7 @@
 
 #include <nanobind/nanobind.h>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace nb = nanobind;
 

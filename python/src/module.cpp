@@ -3,7 +3,7 @@
 #include "errors.hpp"
 #include <nanobind/nanobind.h>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -16,7 +16,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -14,7 +14,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 #include "muslin/scene/names.hpp"
 
 namespace nb = nanobind;

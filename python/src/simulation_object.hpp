@@ -10,7 +10,7 @@
 
 #include "arrays.hpp"
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::python {
 

@@ -9,7 +9,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -44,9 +44,8 @@ def test_sdist_has_the_sources_and_no_more(source, sdist):
 
 
 def test_wheel_installs_and_runs(source, sdist, tmp_path):
-    prefix = tmp_path / "prefix"
-    run("cmake", "--install", os.environ["MUSLIN_BUILD"], "--prefix", prefix, cwd=source)
-    settings = f"'cmake.source-dir': 'python', 'cmake.define.CMAKE_PREFIX_PATH': '{prefix}', 'cmake.build-type': 'Debug'"
+    build = os.environ["MUSLIN_BUILD"]
+    settings = f"'cmake.source-dir': 'python', 'cmake.define.MUSLIN_BUILD': '{build}', 'cmake.build-type': 'Debug'"
     script = FROM_HERE.format(kind="wheel", settings=settings)
     name = run(sys.executable, "-c", script, tmp_path, cwd=sdist).split()[-1]
     abi = "cp312-abi3" if sys.version_info >= (3, 12) else f"cp3{sys.version_info.minor}-cp3{sys.version_info.minor}"

@@ -1,8 +1,10 @@
 // version() returns the version of the library, MAJOR.MINOR.PATCH.
 #pragma once
 
+#include "muslin/api.hpp"
+
 namespace muslin {
 
-const char* version();
+MUSLIN_API const char* version();
 
 }  // namespace muslin

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <set>
+#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -43,6 +45,61 @@ TEST(Layering, FoldersIncludeOnlyLowerFolders) {
     }
   }
   EXPECT_GT(files, 10);
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+std::set<std::string> matches(const std::string& text, const std::string& pattern) {
+  const std::regex expression(pattern);
+  std::set<std::string> found;
+  for (std::sregex_iterator at(text.begin(), text.end(), expression), end; at != end; ++at)
+    found.insert((*at)[1]);
+  return found;
+}
+
+void include_all(const std::filesystem::path& root, const std::string& header, std::set<std::string>& seen) {
+  if (!seen.insert(header).second) return;
+  for (const std::string& next : matches(text_of(root / header), "#include \"muslin/([^\"]+)\""))
+    include_all(root, next, seen);
+}
+
+TEST(Package, PublicHeadersAreThoseThatTheFacadeIncludes) {
+  const auto root = std::filesystem::path(MUSLIN_SOURCE_DIR) / "src" / "muslin";
+  std::set<std::string> included;
+  include_all(root, "muslin.hpp", included);
+  EXPECT_EQ(included, matches(text_of(root / "public_headers.cmake"), "([a-z_/]+\\.hpp)[\n)]"))
+      << "list them in src/muslin/public_headers.cmake";
+}
+
+TEST(Package, PublicHeadersNeedOnlyEigen) {
+  const auto root = std::filesystem::path(MUSLIN_SOURCE_DIR) / "src" / "muslin";
+  std::set<std::string> included;
+  include_all(root, "muslin.hpp", included);
+  for (const std::string& header : included)
+    for (const std::string& other : matches(text_of(root / header), "#include <([A-Za-z0-9_+]+/)"))
+      EXPECT_EQ(other, "Eigen/") << header;
+}
+
+TEST(Package, EverySourceIncludesItsOwnHeaderFirst) {
+  namespace fs = std::filesystem;
+  const fs::path root = fs::path(MUSLIN_SOURCE_DIR) / "src";
+  const std::regex first("#include +[<\"]([^>\"]+)");
+  int sources = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "muslin")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const fs::path own = fs::path(entry.path()).replace_extension(".hpp");
+    if (!fs::exists(own)) continue;
+    ++sources;
+    const std::string text = text_of(entry.path());
+    std::smatch match;
+    ASSERT_TRUE(std::regex_search(text, match, first)) << entry.path();
+    EXPECT_EQ(match[1], fs::relative(own, root)) << entry.path();
+  }
+  EXPECT_GT(sources, 100);
 }
 
 }  // namespace

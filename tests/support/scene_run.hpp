@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "muslin/muslin.hpp"
+#include "muslin/hosts.hpp"
 
 namespace muslin::test {
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "muslin/api.hpp"
 #include "muslin/cache/run_reader.hpp"
 #include "muslin/core/progress.hpp"
 
@@ -21,7 +22,7 @@ struct ExportOptions {
 ///   .usda        meshes with time samples of points, velocities and extents
 ///   .vtu         the lattice's voxels per frame with displacement, velocity, stretch, and NAME.pvd
 /// Each file appears when it is complete. Errors: usage, for another suffix or an unknown body; file.
-void export_run(const RunReader& run, const std::filesystem::path& file, const ExportOptions& options = {},
-                const Progress& progress = {});
+MUSLIN_API void export_run(const RunReader& run, const std::filesystem::path& file,
+                           const ExportOptions& options = {}, const Progress& progress = {});
 
 }  // namespace muslin

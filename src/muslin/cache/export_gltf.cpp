@@ -11,6 +11,7 @@
 #include "muslin/cache/export_formats.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/output_file.hpp"
+#include "muslin/version.hpp"
 
 namespace muslin {
 namespace {
@@ -64,7 +65,7 @@ SplitMesh split(const Mesh& mesh) {
 /// The document and its binary buffer, built together.
 class Document {
  public:
-  Json json = {{"asset", {{"version", "2.0"}, {"generator", "muslin " MUSLIN_VERSION}}}};
+  Json json = {{"asset", {{"version", "2.0"}, {"generator", fmt::format("muslin {}", version())}}}};
 
   /// A buffer view over everything that is appended until the next call.
   int open_view(int target, int stride) {

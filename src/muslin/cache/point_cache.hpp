@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/output_file.hpp"
 #include "muslin/core/vectors.hpp"
 
@@ -19,7 +20,7 @@ namespace muslin {
 using Vec3f = Eigen::Vector3f;
 
 /// Writes a PC2 file sample by sample; its header never counts a sample that is not yet written.
-class Pc2Writer {
+class MUSLIN_API Pc2Writer {
  public:
   Pc2Writer() = default;
   /// A new file, or with Mode::resume an existing one, of which the first `samples` samples are kept.
@@ -40,7 +41,7 @@ class Pc2Writer {
 };
 
 /// Reads samples of a PC2 file in any order. A file that was cut off has the samples that are complete.
-class Pc2Reader {
+class MUSLIN_API Pc2Reader {
  public:
   /// Errors: file; input, if it is no PC2 file.
   explicit Pc2Reader(std::filesystem::path path);
@@ -59,8 +60,9 @@ class Pc2Reader {
 using FramePoints = std::function<std::vector<Vec3f>(int frame)>;
 
 /// Writes `frames` frames at frame/frame_rate seconds; the file appears when it is complete. Errors: file.
-void write_pc2(const std::filesystem::path& path, int frames, std::size_t points, const FramePoints& at);
-void write_mdd(const std::filesystem::path& path, int frames, std::size_t points, double frame_rate,
-               const FramePoints& at);
+MUSLIN_API void write_pc2(const std::filesystem::path& path, int frames, std::size_t points,
+                          const FramePoints& at);
+MUSLIN_API void write_mdd(const std::filesystem::path& path, int frames, std::size_t points,
+                          double frame_rate, const FramePoints& at);
 
 }  // namespace muslin

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/scene/scene.hpp"
 
 namespace muslin {
@@ -45,8 +46,8 @@ struct RunResult {
 
 /// Errors: as read_scene, build_model, RunWriter and Simulation::advance throw them. After Error(solver) the
 /// run is marked `failed`, holds the frames up to there and a checkpoint of the last good step.
-RunResult run_scene(const std::filesystem::path& scene, const RunOptions& options);
+MUSLIN_API RunResult run_scene(const std::filesystem::path& scene, const RunOptions& options);
 /// Runs a scene that has been read; `options.overrides` are not applied again.
-RunResult run_scene(const Scene& scene, const RunOptions& options);
+MUSLIN_API RunResult run_scene(const Scene& scene, const RunOptions& options);
 
 }  // namespace muslin

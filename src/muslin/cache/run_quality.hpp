@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/simulation/diagnostics.hpp"
 
 namespace muslin {
 
 /// Summed over the rows of diagnostics.csv and stretch.csv, those of earlier sessions as well.
-struct RunQuality {
+struct MUSLIN_API RunQuality {
   /// A shell that was stretched beyond its `stretch_limit`.
   struct Overstretched {
     std::string body;
@@ -35,9 +36,9 @@ struct RunQuality {
 
 /// "frame 3", "frames 12 to 15 and 20"; of many, the first ranges and how many frames more. `frames` ascend
 /// and are not empty.
-std::string describe_frames(const std::vector<int>& frames);
+MUSLIN_API std::string describe_frames(const std::vector<int>& frames);
 
 /// Returns warnings for the user, one sentence each; empty if there is no defect.
-std::vector<std::string> warnings_of(const RunQuality& quality);
+MUSLIN_API std::vector<std::string> warnings_of(const RunQuality& quality);
 
 }  // namespace muslin

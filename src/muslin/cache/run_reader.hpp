@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/cache/point_cache.hpp"
 #include "muslin/cache/run_writer.hpp"
 #include "muslin/cache/selections.hpp"
@@ -20,12 +21,12 @@ enum class SurfaceKind {
   skin,     ///< the original mesh, carried by the lattice
   contour,  ///< marching squares or cubes on the deformed lattice
 };
-const char* name_of(SurfaceKind surface);
+MUSLIN_API const char* name_of(SurfaceKind surface);
 
 /// A run, finished or not, even while it is being written. Frames 0 … frame_count() − 1 are complete in all
 /// files; the count is taken when the reader is made. Bodies are numbered as in bodies(). Errors of all
 /// functions that take one: usage, if there is no such body or frame.
-class RunReader {
+class MUSLIN_API RunReader {
  public:
   /// Errors: file, if there is no run; input, if it is damaged.
   explicit RunReader(std::filesystem::path directory);

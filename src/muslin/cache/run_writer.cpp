@@ -25,6 +25,7 @@
 #include "muslin/scene/describe.hpp"
 #include "muslin/scene/names.hpp"
 #include "muslin/simulation/checkpoint.hpp"
+#include "muslin/version.hpp"
 
 namespace muslin {
 namespace {
@@ -383,7 +384,7 @@ void RunWriter::Impl::prune_checkpoints() const {
 void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason) const {
   const Model& model = this->model();
   Json run;
-  run["muslin"] = {{"version", MUSLIN_VERSION}, {"format", run_format}};
+  run["muslin"] = {{"version", version()}, {"format", run_format}};
   run["title"] = model.scene.title;
   run["status"] = name_of(status);
   if (!reason.empty()) run["reason"] = reason;

@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/cache/run_quality.hpp"
 #include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
 
 enum class RunStatus { running, finished, interrupted, failed };
-const char* name_of(RunStatus status);
+MUSLIN_API const char* name_of(RunStatus status);
 
 /// Checkpoints to keep and the frame to resume from.
 struct RunHistory {
@@ -23,7 +24,7 @@ struct RunHistory {
 
 /// Returns the settings of the run in `directory` that differ from the model's scene, e.g. "time.duration".
 /// Errors: input, naming them, if they are incompatible with the frames already written; file.
-std::vector<std::string> changes_since(const std::filesystem::path& directory, const Model& model);
+MUSLIN_API std::vector<std::string> changes_since(const std::filesystem::path& directory, const Model& model);
 
 /// Writes a run. A lock in `checkpoint/` admits one process at a time.
 ///
@@ -32,7 +33,7 @@ std::vector<std::string> changes_since(const std::filesystem::path& directory, c
 /// written after every frame; states beyond 64 MiB at least every 10 s instead. The content is forced to the
 /// disk every 5 s and at the end. The last two checkpoints are kept; with `keep_states` one of every frame,
 /// whatever its size.
-class RunWriter {
+class MUSLIN_API RunWriter {
  public:
   /// Begins a run at the simulation's frame 0, or with `resume` restores the simulation from the newest
   /// checkpoint, or that of `history.resume_from`, and continues from there; without any it begins anew. An

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/scene/model.hpp"
 
 namespace muslin {
@@ -23,12 +24,13 @@ struct Selections {
   std::vector<Chosen> pins, point_forces;
 };
 
-Selections selections_of(const Model& model);
-std::string selections_json(const Model& model);
+MUSLIN_API Selections selections_of(const Model& model);
+MUSLIN_API std::string selections_json(const Model& model);
 
 /// `points`: per body, how many points its cache has. Empty if the file does not exist: versions before 0.1
 /// did not write it. Errors: file; input, if it is damaged.
-Selections read_selections(const std::filesystem::path& path, const std::vector<std::string>& bodies,
-                           const std::vector<std::size_t>& points);
+MUSLIN_API Selections read_selections(const std::filesystem::path& path,
+                                      const std::vector<std::string>& bodies,
+                                      const std::vector<std::size_t>& points);
 
 }  // namespace muslin

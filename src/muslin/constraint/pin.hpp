@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/point_sequence.hpp"
 
@@ -14,7 +15,7 @@ namespace muslin {
 
 /// A rigid motion given by keyframes: linear in translation, spherical-linear in rotation between them,
 /// constant before the first and after the last. No keyframes: the identity.
-struct Motion {
+struct MUSLIN_API Motion {
   struct Key {
     double time = 0;                ///< [s]
     Vec3 translate = Vec3::Zero();  ///< [m]

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/constraint/pin.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/point_sequence.hpp"
@@ -15,7 +16,7 @@ namespace muslin {
 
 /// Vertices first … first + start.size() − 1 are at motion(t)·motion(0)⁻¹ applied to their start positions,
 /// or, with a sequence, at `placement` applied to its points.
-struct Prescribed {
+struct MUSLIN_API Prescribed {
   int first = 0;
   std::vector<Vec3> start;  ///< at time 0 [m]
   Motion motion;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "muslin/contact/contact_candidates.hpp"
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/intersections.hpp"
 #include "muslin/core/error.hpp"
 

@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "muslin/contact/contact_model.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
+
+struct ContactModel;
 
 struct Crossing {
   enum class Kind {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "muslin/api.hpp"
+
 namespace muslin {
 
 /// The value is the exit code of the program.
@@ -24,7 +26,7 @@ struct Place {
 };
 
 /// what() reads `FILE:LINE:COLUMN: problem; remedy`, without unknown parts.
-class Error : public std::runtime_error {
+class MUSLIN_API Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, Place place, std::string problem, std::string remedy);
   Error(ErrorKind kind, std::string problem, std::string remedy);

@@ -6,11 +6,13 @@
 #include <span>
 #include <string_view>
 
+#include "muslin/api.hpp"
+
 namespace muslin {
 
 /// A file being written. All errors are Error(file) naming the path. Not copyable; closes when destroyed
 /// (then without a check: call close()).
-class OutputFile {
+class MUSLIN_API OutputFile {
  public:
   enum class Mode {
     replace,  ///< new or emptied
@@ -43,7 +45,7 @@ class OutputFile {
 
 /// A file that appears under its name only when it is complete: it is written as NAME.part beside it and
 /// renamed. A link is followed; other than regular files are refused. Errors: file.
-class WholeFile {
+class MUSLIN_API WholeFile {
  public:
   explicit WholeFile(std::filesystem::path path);
   ~WholeFile();
@@ -62,9 +64,10 @@ class WholeFile {
 
 /// Writes to a temporary file beside `path` and renames it: readers see the old content or the new, never a
 /// part. With `durable` the new content is on the disk before the old is gone.
-void write_atomically(const std::filesystem::path& path, std::string_view content, bool durable = true);
+MUSLIN_API void write_atomically(const std::filesystem::path& path, std::string_view content,
+                                 bool durable = true);
 
 /// Creates a directory and its parents. Errors: file.
-void make_directory(const std::filesystem::path& path);
+MUSLIN_API void make_directory(const std::filesystem::path& path);
 
 }  // namespace muslin

@@ -6,14 +6,17 @@
 #include <cstddef>
 #include <vector>
 
+#include "muslin/api.hpp"
+
 namespace muslin {
 
 /// Limits all parallel work of the process to `count` threads; 0 means one per core.
-void set_thread_count(int count);
-int thread_count();
+MUSLIN_API void set_thread_count(int count);
+MUSLIN_API int thread_count();
 
 /// Calls call(body, block) for block = 0 … blocks − 1, in parallel and in any order.
-void parallel_blocks(std::size_t blocks, void (*call)(const void* body, std::size_t block), const void* body);
+MUSLIN_API void parallel_blocks(std::size_t blocks, void (*call)(const void* body, std::size_t block),
+                                const void* body);
 
 /// Calls body(begin, end) for consecutive blocks of at most `grain` indices that cover [0, count).
 template <class Body>

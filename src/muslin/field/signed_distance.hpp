@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/progress.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/mesh.hpp"
@@ -20,7 +21,7 @@ struct SurfacePoint {
 /// Distance to the surface, negative inside. The magnitude is the exact distance to the nearest triangle
 /// (1e-6 relative or better); the sign is that of the generalised winding number, inside where it exceeds one
 /// half (Barill et al. 2018), which also works for meshes with holes and triangle soups.
-class SignedDistance {
+class MUSLIN_API SignedDistance {
  public:
   /// The solid is the volume enclosed by the faces, for any orientation (see orientation.hpp). Meant for
   /// meshes that pass require_usable (inspect.hpp). Errors: input, if there are no faces.
@@ -76,7 +77,7 @@ struct DistanceField {
 /// sign is computed only near the surface and propagated from there: it cannot change between two neighbours
 /// whose distances add up to more than the width. `band` ≥ 0 [m], infinity for all samples. Errors: usage, if
 /// the grid or the band is invalid; interrupted.
-DistanceField sample_field(const SignedDistance& distance, const Grid& grid, double band,
-                           const Progress& progress = {});
+MUSLIN_API DistanceField sample_field(const SignedDistance& distance, const Grid& grid, double band,
+                                      const Progress& progress = {});
 
 }  // namespace muslin

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "muslin/api.hpp"
 #include "muslin/potential/potential.hpp"
 
 namespace muslin {
@@ -13,7 +14,7 @@ namespace muslin {
 /// [s], positions [m] and velocities [m/s] there, and constant during it (W = −F·x). A force that is stiff
 /// relative to the step, such as a strong spring or drag, is unstable just as in an explicit integrator: a
 /// drag F = −c v needs steps below 2 m/c. A halved step reads it for each half.
-class ForceFunction : public Load {
+class MUSLIN_API ForceFunction : public Load {
  public:
   /// Writes F into `forces`, which is zero; all are #V by 3. Runs in the thread that advances the simulation,
   /// not in several at once. Its exceptions leave Simulation::advance, with the state at the beginning of the

@@ -3,12 +3,13 @@
 
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
 
 /// Constant, or keyframed: linear between the keys, constant before the first and after the last.
-struct Keyed {
+struct MUSLIN_API Keyed {
   struct Key {
     double time = 0;  ///< [s]
     Vec3 value = Vec3::Zero();
@@ -21,7 +22,7 @@ struct Keyed {
 };
 
 /// The time during which a force acts, and its share of a step.
-struct Window {
+struct MUSLIN_API Window {
   double from = 0;   ///< [s]
   double until = 0;  ///< [s], may be infinite
 

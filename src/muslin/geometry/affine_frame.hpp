@@ -12,12 +12,13 @@
 
 #include <array>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/mass_properties.hpp"
 
 namespace muslin {
 
-struct AffineFrame {
+struct MUSLIN_API AffineFrame {
   Vec3 centre = Vec3::Zero();
   Mat3 axes = Mat3::Identity();  ///< columns; a rotation
   Vec3 radii = Vec3::Ones();     ///< a, b, c > 0 [m]
@@ -30,7 +31,7 @@ struct AffineFrame {
 /// Returns the frame of a body of these mass properties (volume > 0). A radius less than a thousandth of the
 /// largest is raised to that: the spin of a needle about its axis, or of a foil along itself, is slower than
 /// the real one, which is invisible in pictures, and the equations stay well conditioned.
-AffineFrame equimomental_frame(const MassProperties& body);
+MUSLIN_API AffineFrame equimomental_frame(const MassProperties& body);
 
 /// Signs of the corners, one row per corner.
 inline constexpr std::array<std::array<int, 3>, 4> corner_signs = {

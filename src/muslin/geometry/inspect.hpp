@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/geometry/mesh.hpp"
 
 namespace muslin {
@@ -26,13 +27,13 @@ struct MeshReport {
 };
 /// Works for any mesh; if an index or a position is invalid, only the counts of vertices and faces and that
 /// warning are filled in. Components are joined by shared vertices.
-MeshReport inspect(const Mesh& mesh);
+MUSLIN_API MeshReport inspect(const Mesh& mesh);
 
 /// Positions beyond this are refused, since the file must be broken [m].
 inline constexpr double largest_coordinate = 1e9;
 
 /// Throws Error(input) naming `file` if the mesh cannot be used at all: no vertices, no faces, a position
 /// that is not finite or beyond 1e9 m, an index out of range, no area.
-void require_usable(const Mesh& mesh, const std::string& file);
+MUSLIN_API void require_usable(const Mesh& mesh, const std::string& file);
 
 }  // namespace muslin

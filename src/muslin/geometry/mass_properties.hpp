@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
@@ -16,13 +17,13 @@ struct MassProperties {
   Mat3 second_moment = Mat3::Zero();  ///< S = ∫ (x − centre)(x − centre)ᵀ dV [m⁵]
 };
 
-MassProperties sphere_mass(const Vec3& centre, double radius);
+MUSLIN_API MassProperties sphere_mass(const Vec3& centre, double radius);
 /// For the capsule around the segment a b.
-MassProperties capsule_mass(const Vec3& a, const Vec3& b, double radius);
+MUSLIN_API MassProperties capsule_mass(const Vec3& a, const Vec3& b, double radius);
 /// For an axis-aligned box.
-MassProperties box_mass(const Vec3& centre, const Vec3& size);
+MUSLIN_API MassProperties box_mass(const Vec3& centre, const Vec3& size);
 /// For the solid enclosed by the triangles (#T by 3, indices into positions), which must be closed and face
 /// outward. Inward faces flip the signs of volume and second moment.
-MassProperties polyhedron_mass(ConstVectors positions, std::span<const Vec3i> triangles);
+MUSLIN_API MassProperties polyhedron_mass(ConstVectors positions, std::span<const Vec3i> triangles);
 
 }  // namespace muslin

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/topology/topology.hpp"
 
@@ -20,7 +21,7 @@ struct MeshGroup {
   std::vector<int> vertices;  ///< indices of the vertices of those faces, or a vertex group of its own
 };
 
-struct Mesh : Topology {
+struct MUSLIN_API Mesh : Topology {
   std::string name;             ///< object name, may be empty
   std::vector<Vec3> positions;  ///< #V by 3
   std::vector<Vec2> uvs;        ///< #T texture coordinates; a vertex on a seam has several
@@ -42,7 +43,7 @@ struct MeshCut {
 /// Opens edges as `cut` does for a topology. Faces, their order and their texture coordinates stay; new
 /// vertices come last, lie where their origins do and belong to the groups of those. Errors: those of the
 /// other `cut`.
-MeshCut cut(const Mesh& mesh, std::span<const std::array<int, 2>> edges);
+MUSLIN_API MeshCut cut(const Mesh& mesh, std::span<const std::array<int, 2>> edges);
 
 /// The polygons cut into triangles, in face order, n − 2 from n corners, with the orientation of their
 /// polygon. Concave polygons are cut inside their outline, seen along their normal; vertices are neither
@@ -52,10 +53,10 @@ struct Triangulation {
   std::vector<int> faces;        ///< #T the polygon each triangle comes from
 };
 /// Indices must be in range (require_usable).
-Triangulation triangulate(const Mesh& mesh);
+MUSLIN_API Triangulation triangulate(const Mesh& mesh);
 
 /// Returns twice the area of a polygon times its unit normal (Newell's sum): exact for plane polygons, the
 /// best-fitting plane for others. Not finite or zero if the polygon is degenerate.
-Vec3 newell_normal(ConstVectors positions, std::span<const int> face);
+MUSLIN_API Vec3 newell_normal(ConstVectors positions, std::span<const int> face);
 
 }  // namespace muslin

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "muslin/api.hpp"
 #include "muslin/geometry/mesh.hpp"
 
 namespace muslin {
@@ -17,16 +18,16 @@ struct MeshFile {
   Mesh mesh;
   std::string note;  ///< changes made by the reader, empty if none
 };
-MeshFile read_mesh(const std::filesystem::path& path);
+MUSLIN_API MeshFile read_mesh(const std::filesystem::path& path);
 
 /// The same from memory. `suffix` with its dot names the format, `file` is for messages; external buffers of
 /// a .gltf are searched in `folder`, and refused if that is empty.
-MeshFile read_mesh_from(std::string_view bytes, const std::string& suffix, const std::string& file,
-                        const std::filesystem::path& folder = {});
+MUSLIN_API MeshFile read_mesh_from(std::string_view bytes, const std::string& suffix, const std::string& file,
+                                   const std::filesystem::path& folder = {});
 
 /// Writes .obj or .ply by suffix: same polygons, vertex order, texture coordinates (.obj), groups (.obj).
 /// Written to a temporary file and renamed, so that a full disk leaves no broken file. Errors: file.
-void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
-void write_mesh(const std::filesystem::path& path, const Mesh& mesh, ConstVectors positions);
+MUSLIN_API void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
+MUSLIN_API void write_mesh(const std::filesystem::path& path, const Mesh& mesh, ConstVectors positions);
 
 }  // namespace muslin

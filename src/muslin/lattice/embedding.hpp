@@ -6,13 +6,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/lattice/lattice.hpp"
 
 namespace muslin {
 
 /// Each point is a weighted sum of at most eight lattice vertices; the weights of a point add up to 1.
-struct Embedding {
+struct MUSLIN_API Embedding {
   std::vector<std::array<int, 8>> vertices;    ///< #P; unused slots repeat a vertex with weight 0
   std::vector<std::array<double, 8>> weights;  ///< #P
 
@@ -33,6 +34,6 @@ struct Embedding {
 /// Returns the trilinear weights of the voxel each point lies in at rest; a point outside all voxels is
 /// carried by the nearest one (extrapolated). A point in a face shared by voxels is carried by any of them:
 /// the weights are the same. Prepared for the transpose.
-Embedding embed(const Lattice& lattice, ConstVectors points);
+MUSLIN_API Embedding embed(const Lattice& lattice, ConstVectors points);
 
 }  // namespace muslin

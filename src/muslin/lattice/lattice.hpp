@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/progress.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/field/signed_distance.hpp"
@@ -30,7 +31,7 @@ struct LatticeSettings {
   double threshold = 0.5;  ///< in voxel widths; only for VoxelRule::threshold
 };
 
-struct Lattice {
+struct MUSLIN_API Lattice {
   Vec3 origin = Vec3::Zero();    ///< corner of voxel (0,0,0) [m]
   double width = 1;              ///< [m]
   Vec3i extent = Vec3i::Zero();  ///< voxels of the bounding grid along x, y, z
@@ -57,7 +58,7 @@ struct Lattice {
 /// that many voxels. For thresholds above one half the grid is wider by the voxels that may be kept around
 /// the box. Memory and time grow with the kept voxels, not with the grid. Same bits for any thread count.
 /// Errors: usage, if a setting is invalid; input, if no voxel is kept or more than 2³⁰ would be.
-Lattice build_lattice(const Mesh& mesh, const SignedDistance& distance, const LatticeSettings& settings,
-                      const Progress& progress = {});
+MUSLIN_API Lattice build_lattice(const Mesh& mesh, const SignedDistance& distance,
+                                 const LatticeSettings& settings, const Progress& progress = {});
 
 }  // namespace muslin

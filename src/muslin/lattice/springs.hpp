@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/lattice/lattice.hpp"
 
 namespace muslin {
@@ -21,7 +22,7 @@ struct SpringDirection {
   Vec3i offset;
   SpringKind kind;
 };
-std::vector<SpringDirection> spring_directions(Bracing bracing);
+MUSLIN_API std::vector<SpringDirection> spring_directions(Bracing bracing);
 
 /// Springs of one direction along one contiguous piece of a row: spring i joins vertex a + i to b + i, for
 /// 0 ≤ i < length, and has index first + i. Traversing a lattice needs no index arrays.
@@ -45,10 +46,10 @@ struct Springs {
   /// Per spring: mean fill of the kept voxels around it.
   std::vector<float> mean_fill;
 };
-Springs build_springs(const Lattice& lattice, Bracing bracing);
+MUSLIN_API Springs build_springs(const Lattice& lattice, Bracing bracing);
 
 /// Returns six positively oriented tetrahedra per voxel (Kuhn / Freudenthal), sharing the voxel's (1,1,1)
 /// diagonal; faces of neighbouring voxels match. Shape 6·#C.
-std::vector<std::array<int, 4>> build_tetrahedra(const Lattice& lattice);
+MUSLIN_API std::vector<std::array<int, 4>> build_tetrahedra(const Lattice& lattice);
 
 }  // namespace muslin

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/material/shell_material.hpp"
 
 namespace muslin {
@@ -35,15 +36,15 @@ struct Material {
 
 /// Returns the names of the materials that come with muslin, in alphabetical order. They are compiled into
 /// the library.
-std::vector<std::string> material_names();
+MUSLIN_API std::vector<std::string> material_names();
 
 /// Returns the material of this name. Errors: input, naming the nearest one.
-Material find_material(const std::string& name);
+MUSLIN_API Material find_material(const std::string& name);
 
 /// Reads a material file: `name`, `description`, `source`, a table [lattice] and a table [shell] with the
 /// quantities above, one of them or both, and a table [reference] of free numbers. Errors: file; input with
 /// file, line and column.
-Material read_material(const std::filesystem::path& file);
-Material parse_material(std::string_view text, const std::string& file);
+MUSLIN_API Material read_material(const std::filesystem::path& file);
+MUSLIN_API Material parse_material(std::string_view text, const std::string& file);
 
 }  // namespace muslin

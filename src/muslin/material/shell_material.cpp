@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "muslin/core/toml_table.hpp"
+
 namespace muslin {
 namespace {
 

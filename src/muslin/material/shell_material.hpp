@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "muslin/core/toml_table.hpp"
+#include "muslin/api.hpp"
 
 namespace muslin {
+
+class TomlTable;
 
 struct ShellMaterial {
   double areal_density = 0;      ///< [kg/m²]
@@ -23,7 +25,7 @@ struct ShellMaterial {
 };
 
 /// Returns areal_density, membrane_warp, …: the keys of a table of shell numbers.
-const std::vector<std::string>& shell_material_keys();
+MUSLIN_API const std::vector<std::string>& shell_material_keys();
 
 /// Returns the numbers given in `table`, else those of `base`. Without a base areal_density, membrane_warp
 /// and bending_warp are required; weft is as warp, shear as in an isotropic sheet, bias between warp and

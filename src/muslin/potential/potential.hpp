@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/state.hpp"
 
@@ -20,7 +21,7 @@ class HessianSink;
 
 /// W(x) in joule for positions x (#V by 3, m). Implementations are immutable, safe to call from several
 /// threads, deterministic for any thread count, and parallel inside where that pays.
-class Potential {
+class MUSLIN_API Potential {
  public:
   virtual ~Potential() = default;
 
@@ -62,7 +63,7 @@ class Potential {
 
 /// A load that depends on time, velocity or history (gravity, wind, damping): at the start of a step it
 /// yields the potential which that step minimises. Null: nothing acts during this step.
-class Load {
+class MUSLIN_API Load {
  public:
   virtual ~Load() = default;
   virtual std::unique_ptr<Potential> potential(const StepContext& step) const = 0;

@@ -6,13 +6,14 @@
 #include <functional>
 #include <span>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/potential.hpp"
 
 namespace muslin {
 
 /// Guards one step at a time, from positions that are safe. All vectors are #V by 3, [m].
-class StepGuard {
+class MUSLIN_API StepGuard {
  public:
   virtual ~StepGuard() = default;
 

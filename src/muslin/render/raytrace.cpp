@@ -8,7 +8,11 @@
 #include <utility>
 #include <vector>
 
+#if MUSLIN_EMBREE == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 #include <tbb/task_arena.h>
 
 #include "muslin/core/error.hpp"
@@ -20,6 +24,35 @@
 
 namespace muslin {
 namespace {
+
+// The calls that differ between Embree 3 and 4. The four rays of a pixel are coherent.
+#if MUSLIN_EMBREE == 3
+void intersect(RTCScene scene, RTCRayHit& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &ray);
+}
+void occluded(const int* valid, RTCScene scene, RTCRay4& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded4(valid, scene, &context, &rays);
+}
+void occluded(const int* valid, RTCScene scene, RTCRay8& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded8(valid, scene, &context, &rays);
+}
+#else
+void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
+void occluded(const int* valid, RTCScene scene, RTCRay4& rays) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded4(valid, scene, &rays, &arguments);
+}
+void occluded(const int* valid, RTCScene scene, RTCRay8& rays) { rtcOccluded8(valid, scene, &rays); }
+#endif
 
 using Vec3f = Eigen::Vector3f;
 using Vec2f = Eigen::Vector2f;
@@ -224,10 +257,7 @@ float Raytracer::Impl::visible_sun(const Vec3f& origin, std::uint32_t sample) co
     rays.tfar[i] = infinity;
     rays.mask[i] = ~0u;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded4(valid, world, &context, &rays);
+  occluded(valid, world, rays);
   float visible = 0;
   for (const float far : rays.tfar) visible += far < 0 ? 0.0f : 0.25f;
   return visible;
@@ -333,9 +363,7 @@ Light Raytracer::Impl::sky_light(const Hit& hit, std::uint32_t sample) const {
       rays.tfar[i] = infinity;
       rays.mask[i] = ~0u;
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded8(valid, world, &context, &rays);
+    occluded(valid, world, rays);
     for (int i = 0; i < count; ++i)
       sum +=
           valid[i] == 0 || rays.tfar[i] < 0 ? blocked : lighting.sky(directions[static_cast<std::size_t>(i)]);
@@ -390,9 +418,7 @@ Light Raytracer::Impl::trace(int x, int y, std::uint32_t sample) const {
   ray.ray.tfar = infinity;
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(world, &context, &ray);
+  intersect(world, ray);
 
   const Light behind = background(py);
   if (scene.ground && eye.y() > ground_height && direction.y() < -1e-6f) {

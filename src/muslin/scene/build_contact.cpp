@@ -11,6 +11,7 @@
 
 #include "muslin/contact/contact_candidates.hpp"
 #include "muslin/contact/contact_energy.hpp"
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/material/lattice_moduli.hpp"

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/scene/names.hpp"
 
 namespace muslin {

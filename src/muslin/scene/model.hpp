@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/constraint/pin.hpp"
 #include "muslin/constraint/prescribed.hpp"
-#include "muslin/contact/contact_model.hpp"
 #include "muslin/core/progress.hpp"
 #include "muslin/geometry/affine_frame.hpp"
 #include "muslin/geometry/inspect.hpp"
@@ -26,6 +26,8 @@
 #include "muslin/surface/contour.hpp"
 
 namespace muslin {
+
+struct ContactModel;
 
 struct BodyStatistics {
   std::int64_t vertices = 0, voxels = 0, tetrahedra = 0;
@@ -101,7 +103,7 @@ struct Probe {
   Embedding point;  ///< one point, indices local to the body
 };
 
-struct Model {
+struct MUSLIN_API Model {
   Scene scene;
   std::vector<Body> bodies;          ///< those of the scene in its order, then its colliders in theirs
   std::vector<Vec3> rest_positions;  ///< #V by 3, all bodies one after the other, at the start [m]
@@ -130,6 +132,6 @@ struct Model {
 };
 
 /// Reads the meshes and builds everything. Errors: input or file, with the place in the scene.
-Model build_model(const Scene& scene, const Progress& progress = {});
+MUSLIN_API Model build_model(const Scene& scene, const Progress& progress = {});
 
 }  // namespace muslin

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/constraint/pin.hpp"
-#include "muslin/contact/contact_model.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/force/keyed.hpp"
@@ -26,7 +26,7 @@
 
 namespace muslin {
 
-struct TimeSettings {
+struct MUSLIN_API TimeSettings {
   double duration = 2;     ///< [s]
   double frame_rate = 24;  ///< [1/s]
   std::optional<int> steps_per_frame;  ///< none: adaptive
@@ -197,17 +197,18 @@ struct Scene {
 };
 
 /// Returns a path as written in the scene, resolved against the scene file's folder.
-std::filesystem::path resolve_path(const Scene& scene, const std::string& path);
+MUSLIN_API std::filesystem::path resolve_path(const Scene& scene, const std::string& path);
 
 /// Returns the mesh called `path` in the scene: one in memory, or that file. Errors: as read_mesh.
-MeshFile scene_mesh(const Scene& scene, const std::string& path);
+MUSLIN_API MeshFile scene_mesh(const Scene& scene, const std::string& path);
 
 /// Reads and checks a scene file; `overrides` are KEY=VALUE as given to --set, e.g. "time.duration=2",
 /// "body.flag.voxel_width=0.5", "body.0.voxel_width=0.5". Unknown keys are errors that name the nearest
 /// known key. Errors: file; input with file, line, column.
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+MUSLIN_API Scene read_scene(const std::filesystem::path& file,
+                            const std::vector<std::string>& overrides = {});
 /// Parses a scene from a text; `file` is the name in messages, and paths are relative to it.
-Scene parse_scene(const std::string& text, const std::filesystem::path& file,
-                  const std::vector<std::string>& overrides = {});
+MUSLIN_API Scene parse_scene(const std::string& text, const std::filesystem::path& file,
+                             const std::vector<std::string>& overrides = {});
 
 }  // namespace muslin

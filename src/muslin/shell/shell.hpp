@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/mesh.hpp"
 
@@ -50,13 +51,13 @@ struct Weave {
 /// `rest_positions` (#V of the mesh by 3) is the shape without stress. Errors: input, naming the polygon and
 /// the vertices (counted from 1), for edges with more than two polygons, triangles without area, vertices of
 /// no polygon, and texture coordinates that are missing or without area where they are needed.
-Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave);
+MUSLIN_API Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave);
 
 /// Returns the angle of a hinge: 0 if flat, positive if vertices 2 and 3 turn away from the normal
 /// (x₁−x₀)×(x₂−x₀), −π … π.
-double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
+MUSLIN_API double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
 
 /// Returns the largest singular value of F over all triangles: the largest stretch in any direction.
-double max_stretch(const Shell& shell, ConstVectors x);
+MUSLIN_API double max_stretch(const Shell& shell, ConstVectors x);
 
 }  // namespace muslin

@@ -73,8 +73,9 @@ CheckpointWriter::CheckpointWriter(const CheckpointHeader& header) {
 }
 
 void CheckpointWriter::append(const void* data, std::size_t size) {
-  const auto* bytes = static_cast<const std::uint8_t*>(data);
-  bytes_.insert(bytes_.end(), bytes, bytes + size);
+  const std::size_t at = bytes_.size();
+  bytes_.resize(at + size);
+  if (size > 0) std::memcpy(bytes_.data() + at, data, size);
 }
 
 void CheckpointWriter::append(std::string_view text) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/scene/model.hpp"
 
@@ -100,9 +101,9 @@ struct RunCosts {
 
 /// The largest ratio of length and rest length in all bodies at x (#V by 3 [m]): of a spring, or of a shell
 /// in any direction. 1 without bodies.
-double max_stretch(const Model& model, ConstVectors x);
+MUSLIN_API double max_stretch(const Model& model, ConstVectors x);
 /// That of one body, at x (its #V by 3 [m]).
-double max_stretch(const Body& body, ConstVectors x);
+MUSLIN_API double max_stretch(const Body& body, ConstVectors x);
 
 /// The stretch of a shell that has a `stretch_limit`, at the end of a frame.
 struct LimitedStretch {
@@ -113,6 +114,6 @@ struct LimitedStretch {
 };
 
 /// One for each shell with a limit, at x (#V by 3 [m]); `frame` is written into each.
-std::vector<LimitedStretch> limited_stretches(const Model& model, ConstVectors x, int frame);
+MUSLIN_API std::vector<LimitedStretch> limited_stretches(const Model& model, ConstVectors x, int frame);
 
 }  // namespace muslin

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/force/force_function.hpp"
 #include "muslin/potential/potential.hpp"
@@ -16,7 +17,7 @@ namespace muslin {
 class Simulation;
 
 /// A reference: valid as long as the simulation lives and is not moved.
-class SimulatedBody {
+class MUSLIN_API SimulatedBody {
  public:
   const std::string& name() const { return body_->name; }
   /// Return its vertices, #V by 3, [m] and [m/s]: the nodes of a lattice, the vertices of a shell's or a

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/progress.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/state.hpp"
@@ -23,7 +24,7 @@ struct SimulationOptions {
   bool allow_tangled = false;
 };
 
-class Simulation {
+class MUSLIN_API Simulation {
  public:
   /// Errors: input, if surfaces cross at the start and may not; usage, if symplectic_euler meets contact.
   explicit Simulation(std::shared_ptr<const Model> model, const SimulationOptions& options = {});

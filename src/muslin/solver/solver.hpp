@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/potential.hpp"
 #include "muslin/potential/state.hpp"
@@ -80,10 +81,10 @@ struct StepReport {
 };
 
 /// Returns the data for loads before the step of length dt from `state`.
-StepContext step_context(Integrator integrator, const State& state, double dt);
+MUSLIN_API StepContext step_context(Integrator integrator, const State& state, double dt);
 
 /// Advances states step by step. Keeps its vectors between steps to avoid allocations.
-class Stepper {
+class MUSLIN_API Stepper {
  public:
   Stepper();
   ~Stepper();
@@ -104,7 +105,7 @@ class Stepper {
 };
 
 /// Advances one step with a temporary Stepper.
-StepReport solve_step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
-                      State& state);
+MUSLIN_API StepReport solve_step(const SolverSettings& settings, const StepContext& context,
+                                 const StepProblem& problem, State& state);
 
 }  // namespace muslin

@@ -6,6 +6,7 @@
 
 #include <span>
 
+#include "muslin/api.hpp"
 #include "muslin/field/signed_distance.hpp"
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/lattice/embedding.hpp"
@@ -36,7 +37,7 @@ struct Contour {
 /// to its bounds; thin along the axis of the lattice's smallest extent, which must be one voxel. In both
 /// cases `Contour::distance` measures the features missed between samples. Errors: input, if squares are
 /// requested for a lattice thicker than one voxel.
-Contour build_contour(const Lattice& lattice, const Mesh& solid, const SignedDistance& distance,
-                      ContourMethod method);
+MUSLIN_API Contour build_contour(const Lattice& lattice, const Mesh& solid, const SignedDistance& distance,
+                                 ContourMethod method);
 
 }  // namespace muslin

@@ -10,9 +10,11 @@
 #include <span>
 #include <vector>
 
+#include "muslin/api.hpp"
+
 namespace muslin {
 
-struct Topology {
+struct MUSLIN_API Topology {
   std::vector<int> face_offsets;   ///< #F + 1; face f has corners face_offsets[f] … face_offsets[f+1]−1
   std::vector<int> face_vertices;  ///< #C vertex of each corner
   std::int64_t version = 0;        ///< number of changes since the surface was made
@@ -39,7 +41,7 @@ struct EdgeUse {
 
 /// Returns the sides of all faces, sorted by edge, then face, then corner. Sides from a vertex to itself are
 /// left out.
-std::vector<EdgeUse> edge_uses(const Topology& topology);
+MUSLIN_API std::vector<EdgeUse> edge_uses(const Topology& topology);
 
 /// Calls visit(uses of one edge) for each edge of sorted `uses`.
 template <class Visit>
@@ -60,7 +62,7 @@ struct TopologyChange {
 /// these edges, faces that no other edge joins there part: those of the lowest face keep the vertex, every
 /// other group gets a new one, numbered from `vertex_count` on. An edge both of whose vertices stay whole
 /// stays closed. Errors: usage, for a pair of vertices that is no edge.
-TopologyChange cut(const Topology& topology, std::size_t vertex_count,
+MUSLIN_API TopologyChange cut(const Topology& topology, std::size_t vertex_count,
                    std::span<const std::array<int, 2>> edges);
 
 }  // namespace muslin
