@@ -97,7 +97,7 @@ TEST(Package, EverySourceIncludesItsOwnHeaderFirst) {
     const std::string text = text_of(entry.path());
     std::smatch match;
     ASSERT_TRUE(std::regex_search(text, match, first)) << entry.path();
-    EXPECT_EQ(match[1], fs::relative(own, root)) << entry.path();
+    EXPECT_EQ(match[1].str(), fs::relative(own, root).string()) << entry.path();
   }
   EXPECT_GT(sources, 100);
 }

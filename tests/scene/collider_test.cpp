@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/geometry/shapes.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/describe.hpp"

@@ -7,6 +7,7 @@
 #include "support/contact_scene.hpp"
 #include <gtest/gtest.h>
 
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"

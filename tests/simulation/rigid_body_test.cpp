@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/simulation/simulation.hpp"
 
 namespace muslin {

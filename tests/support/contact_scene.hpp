@@ -12,6 +12,7 @@
 #include "support/cloth_grid.hpp"
 #include "support/simple_potentials.hpp"
 
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/potential/restricted.hpp"
