@@ -76,6 +76,7 @@ int run(int argc, char** argv) {
   add_view(program);
   add_export(program);
   add_materials(program);
+  add_schema(program);
   add_verify(program);
 
   try {

@@ -1,5 +1,8 @@
 // muslin materials [NAME]
 #include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "command.hpp"
 #include <fmt/format.h>
@@ -22,39 +25,23 @@ std::string table() {
   return text;
 }
 
+/// Superscripts and dots as terminals without Unicode show them.
+std::string plain(std::string unit) {
+  for (const auto& [from, to] : {std::pair{"²", "2"}, {"³", "3"}, {"·", " "}})
+    for (std::size_t at = unit.find(from); at != std::string::npos; at = unit.find(from))
+      unit.replace(at, std::string_view(from).size(), to);
+  return unit;
+}
+
 std::string page(const Material& m) {
   std::string text = fmt::format("{}: {}\n\n", m.name, m.description);
-  const auto row = [&](const char* what, double value, const char* unit) {
-    text += fmt::format("  {:<24} {:>12.6g} {}\n", what, value, unit);
+  const auto rows = [&](const char* title, const std::vector<MaterialNumber>& numbers) {
+    if (!numbers.empty()) text += title;
+    for (const MaterialNumber& number : numbers)
+      text += fmt::format("  {:<24} {:>12.6g} {}\n", number.key, number.value, plain(number.unit));
   };
-  if (m.has_lattice) {
-    text += "lattice:\n";
-    row("density", m.density, "kg/m3");
-    row("edge_modulus", m.edge_modulus, "N/m2");
-    row("face_diagonal_modulus", m.face_diagonal_modulus, "N/m2");
-    row("body_diagonal_modulus", m.body_diagonal_modulus, "N/m2");
-    row("volume_modulus", m.volume_modulus, "N/m2");
-    if (m.young_modulus > 0) {
-      row("young_modulus", m.young_modulus, "Pa");
-      row("poisson", m.poisson, "");
-    }
-    row("mass_damping", m.mass_damping, "1/s");
-    row("stiffness_damping", m.stiffness_damping, "s");
-  }
-  if (m.shell) {
-    text += "\nshell:\n";
-    row("areal_density", m.shell->areal_density, "kg/m2");
-    row("membrane_warp", m.shell->membrane_warp, "N/m");
-    row("membrane_weft", m.shell->membrane_weft, "N/m");
-    row("membrane_shear", m.shell->membrane_shear, "N/m");
-    row("poisson", m.shell->poisson, "");
-    row("bending_warp", m.shell->bending_warp, "N m");
-    row("bending_weft", m.shell->bending_weft, "N m");
-    row("bending_bias", m.shell->bending_bias, "N m");
-    row("mass_damping", m.shell->mass_damping, "1/s");
-    row("stiffness_damping", m.shell->stiffness_damping, "s");
-    row("bending_damping", m.shell->bending_damping, "s");
-  }
+  rows("lattice:\n", lattice_numbers(m));
+  rows("\nshell:\n", shell_numbers(m));
   if (!m.reference.empty()) text += "\nreference (SI):\n";
   for (const auto& [what, value] : m.reference) text += fmt::format("  {:<24} {:>12.6g}\n", what, value);
   return text + "\nsource: " + m.source + "\n";
@@ -64,32 +51,8 @@ using Json = nlohmann::ordered_json;
 
 Json numbers(const Material& m) {
   Json json = {{"name", m.name}, {"description", m.description}, {"source", m.source}};
-  if (m.has_lattice) {
-    json["lattice"] = {{"density", m.density},
-                       {"edge_modulus", m.edge_modulus},
-                       {"face_diagonal_modulus", m.face_diagonal_modulus},
-                       {"body_diagonal_modulus", m.body_diagonal_modulus},
-                       {"volume_modulus", m.volume_modulus},
-                       {"mass_damping", m.mass_damping},
-                       {"stiffness_damping", m.stiffness_damping}};
-    if (m.young_modulus > 0) {
-      json["lattice"]["young_modulus"] = m.young_modulus;
-      json["lattice"]["poisson"] = m.poisson;
-    }
-  }
-  if (m.shell) {
-    json["shell"] = {{"areal_density", m.shell->areal_density},
-                     {"membrane_warp", m.shell->membrane_warp},
-                     {"membrane_weft", m.shell->membrane_weft},
-                     {"membrane_shear", m.shell->membrane_shear},
-                     {"poisson", m.shell->poisson},
-                     {"bending_warp", m.shell->bending_warp},
-                     {"bending_weft", m.shell->bending_weft},
-                     {"bending_bias", m.shell->bending_bias},
-                     {"mass_damping", m.shell->mass_damping},
-                     {"stiffness_damping", m.shell->stiffness_damping},
-                     {"bending_damping", m.shell->bending_damping}};
-  }
+  for (const MaterialNumber& number : lattice_numbers(m)) json["lattice"][number.key] = number.value;
+  for (const MaterialNumber& number : shell_numbers(m)) json["shell"][number.key] = number.value;
   json["reference"] = Json::object();
   for (const auto& [what, value] : m.reference) json["reference"][what] = value;
   return json;

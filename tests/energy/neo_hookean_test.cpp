@@ -12,9 +12,9 @@ namespace muslin {
 namespace {
 
 constexpr SolidModuli rubber{2e5, 0.35};
-constexpr double mu = rubber.young_modulus / (2 * (1 + rubber.poisson));
+constexpr double mu = rubber.youngs_modulus / (2 * (1 + rubber.poisson));
 constexpr double lame =
-    rubber.young_modulus * rubber.poisson / ((1 + rubber.poisson) * (1 - 2 * rubber.poisson));
+    rubber.youngs_modulus * rubber.poisson / ((1 + rubber.poisson) * (1 - 2 * rubber.poisson));
 
 struct Block {
   Lattice lattice = test::box_lattice({3, 2, 4});

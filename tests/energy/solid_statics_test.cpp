@@ -15,7 +15,7 @@ namespace muslin {
 namespace {
 
 constexpr SolidModuli rubber{2e5, 0.35};
-constexpr double mu = rubber.young_modulus / (2 * (1 + rubber.poisson));
+constexpr double mu = rubber.youngs_modulus / (2 * (1 + rubber.poisson));
 constexpr double lambda = mu / (1 - 2 * rubber.poisson);
 
 /// A bar of 1 × `slender` × 1 (times 0.1 m), `across` voxels wide, some of whose coordinates are held.
@@ -44,7 +44,7 @@ class Bar {
       if (!held_[i / 3][i % 3]) index[i] = n++;
     for (int iteration = 0; iteration < 60; ++iteration) {
       const Eigen::VectorXd g = residual(index, n);
-      if (g.norm() < 1e-11 * rubber.young_modulus * 0.01) return;
+      if (g.norm() < 1e-11 * rubber.youngs_modulus * 0.01) return;
       Eigen::MatrixXd h = hessian(Stiffness::exact, index, n);
       Eigen::LLT<Eigen::MatrixXd> llt(h);
       if (llt.info() != Eigen::Success) llt.compute(hessian(Stiffness::projected, index, n));
@@ -114,7 +114,7 @@ TEST(SolidBar, PulledWithFreeSidesHasYoungsModulusAndPoissonsRatio) {
   for (const int across : {1, 2, 4}) {
     const Bar bar = pulled(across, stretch);
     const double stress = bar.reaction(1, bar.length, 1) / 0.01;
-    EXPECT_NEAR(stress / (stretch - 1) / rubber.young_modulus, 1, 1e-4) << across;
+    EXPECT_NEAR(stress / (stretch - 1) / rubber.youngs_modulus, 1, 1e-4) << across;
     const double across_strain = bar.x.back().x() / 0.1 - 1;
     EXPECT_NEAR(-across_strain / (stretch - 1), rubber.poisson, 1e-4) << across;
   }
@@ -128,7 +128,7 @@ TEST(SolidBar, LargeStretchFollowsTheCurveOfTheLaw) {
       const Bar bar = pulled(across, s);
       const double j = 1 + mu / lambda * (s - 1) / s, side = std::sqrt(j / s);
       const double pull = mu * s + (lambda * (j - 1) - mu) * side * side;
-      EXPECT_NEAR(bar.reaction(1, bar.length, 1) / 0.01, pull, 1e-7 * rubber.young_modulus) << s;
+      EXPECT_NEAR(bar.reaction(1, bar.length, 1) / 0.01, pull, 1e-7 * rubber.youngs_modulus) << s;
       for (std::size_t v = 0; v < bar.x.size(); ++v)
         EXPECT_LE((bar.x[v] - Vec3(side, s, side).cwiseProduct(bar.rest[v])).norm(), 1e-8) << s;
     }
@@ -175,7 +175,7 @@ TEST(SolidBar, HangingUnderItsWeightStretchesAsTheStrengthOfMaterialsSays) {
     int count = 0;
     for (std::size_t v = 0; v < bar.rest.size(); ++v)
       if (bar.on(v, 1, 0)) sunk -= bar.x[v].y(), ++count;
-    const double exact = weight_density * bar.length * bar.length / (2 * rubber.young_modulus);
+    const double exact = weight_density * bar.length * bar.length / (2 * rubber.youngs_modulus);
     const double error = std::abs(sunk / count / exact - 1);
     EXPECT_LT(error, 0.04 / across) << across;
     EXPECT_LT(error, last);

@@ -9,6 +9,7 @@
 
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/scene.hpp"
+#include "muslin/scene/validate.hpp"
 
 namespace muslin {
 namespace {
@@ -130,6 +131,7 @@ TEST(Mutation, ADamagedSceneIsASceneOrAnError) {
       const Scene scene = parse_scene(text, "scene.toml");
       EXPECT_FALSE(scene.bodies.empty() && scene.colliders.empty());
       EXPECT_FALSE(scene.resolved.empty());
+      EXPECT_NO_THROW(validate(scene)) << "the reader accepts " << text;
       ++scenes;
     } catch (const Error& error) {
       EXPECT_FALSE(error.problem().empty());

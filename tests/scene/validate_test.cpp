@@ -47,6 +47,10 @@ type = "point"
 body = "sheet"
 where = { nearest = [0, 0, 0] }
 force = [0, 1, 0]
+[[force]]
+name = "breeze"
+type = "wind"
+velocity = [1, 0, 0]
 [[probe]]
 name = "tip"
 body = "sheet"
@@ -56,6 +60,12 @@ at = [0, 0, 0]
 }
 
 TEST(Validate, AcceptsASceneThatTheReaderAccepts) { EXPECT_NO_THROW(validate(sound_scene())); }
+
+TEST(Validate, AcceptsAProbeOnAColliderThatStandsStill) {
+  Scene scene = sound_scene();
+  scene.probes[0].body = "ground";
+  EXPECT_NO_THROW(validate(scene));
+}
 
 struct Mistake {
   std::string message;
@@ -110,10 +120,22 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[[body]] `sheet`: `bending_warp` is nan",
                 [](Scene& s) { s.bodies[1].material.shell->bending_warp = nan; }},
         Mistake{"[[body]] `sheet`: `stretch_limit` is 1", [](Scene& s) { s.bodies[1].stretch_limit = 1; }},
+        Mistake{
+            "[[body]] `sheet`: with 0 N·m at 45° between 1 and 0.01 N·m some direction would have a negative",
+            [](Scene& s) {
+              ShellMaterial& shell = *s.bodies[1].material.shell;
+              shell.bending_warp = 1, shell.bending_weft = 0.01, shell.bending_bias = 0;
+            }},
+        Mistake{"[[body]] `block`: `voxels` is none of its choices",
+                [](Scene& s) { s.bodies[0].lattice.rule = static_cast<VoxelRule>(7); }},
+        Mistake{"[[body]] `block`: a colour is red, green and blue from 0 to 1",
+                [](Scene& s) { s.bodies[0].colour = Vec3(0, nan, 0); }},
+        Mistake{"[[body]] `block`: `scale` has a component of 0",
+                [](Scene& s) { s.bodies[0].scale.y() = 0; }},
         Mistake{"[[body]] `sheet`: `friction` is -1", [](Scene& s) { s.bodies[1].friction = -1; }},
         Mistake{"[[collider]] `ball`: `radius` is 0", [](Scene& s) { s.colliders[0].radius = 0; }},
         Mistake{"[[collider]] `ball`: `density` is 0", [](Scene& s) { s.colliders[0].density = 0; }},
-        Mistake{"[[collider]] `ball`: it has a `density` and a prescribed motion",
+        Mistake{"[[collider]] `ball`: `density` makes a body that moves by itself",
                 [](Scene& s) { s.colliders[0].motion.keys.emplace_back(); }},
         Mistake{"[[collider]] `ground`: `normal` is not of length 1",
                 [](Scene& s) { s.colliders[1].normal = Vec3(0, 2, 0); }},
@@ -122,18 +144,21 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[[pin]] `hook`: there is no body `shet`", [](Scene& s) { s.pins[0].body = "shet"; }},
         Mistake{"did you mean `sheet`?", [](Scene& s) { s.pins[0].body = "shet"; }},
         Mistake{"[[pin]] `hook`: there is no body `ground`", [](Scene& s) { s.pins[0].body = "ground"; }},
-        Mistake{"[[pin]] `hook`: it acts from 2 until 1 s",
+        Mistake{"[[pin]] `hook`: `until` = 1 s is not after `from` = 2 s",
                 [](Scene& s) { s.pins[0].from = 2, s.pins[0].until = 1; }},
         Mistake{"[[pin]] `hook`: keyframe 1 is at -1 s",
                 [](Scene& s) { s.pins[0].motion.keys[1].time = -1; }},
-        Mistake{"[[pin]] `hook`: it has both keyframes and a sequence",
+        Mistake{"[[pin]] `hook`: `keyframes` and `sequence` both say how the pin moves",
                 [](Scene& s) { s.pins[0].sequence = "walk.pc2"; }},
         Mistake{"there is no body `flag`", [](Scene& s) { s.forces[0].body = "flag"; }},
         Mistake{"it has no value", [](Scene& s) { s.forces[0].value.keys.clear(); }},
         Mistake{"`value` is not finite", [](Scene& s) { s.forces[0].value.keys[0].value.y() = inf; }},
         Mistake{"[[force]] `pull`: a point force has no `where`",
                 [](Scene& s) { s.forces[1].where.reset(); }},
-        Mistake{"[[force]] `pull`: `gust_length` is 0", [](Scene& s) { s.forces[1].gust_length = 0; }},
+        Mistake{"[[force]] `breeze`: `gust_length` is 0; give a number from 1e-06 to 1000000 [m]",
+                [](Scene& s) { s.forces[2].gust_length = 0; }},
+        Mistake{"[[force]] `breeze`: `lift` = 2 is above `drag` = 1",
+                [](Scene& s) { s.forces[2].lift = 2, s.forces[2].drag = 1; }},
         Mistake{"[[probe]] `tip`: there is no body `tip`", [](Scene& s) { s.probes[0].body = "tip"; }},
         Mistake{"[[probe]] `tip`: `at` is not finite", [](Scene& s) { s.probes[0].at.z() = nan; }},
         Mistake{"the mesh `a.obj` is null", [](Scene& s) { s.meshes["a.obj"] = nullptr; }}));

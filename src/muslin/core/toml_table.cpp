@@ -31,6 +31,18 @@ std::string shown(const TomlValue& value) {
   return {};
 }
 
+std::optional<double> number_in(const TomlValue& value) {
+  if (value.type == TomlValue::Type::integer) return static_cast<double>(value.integer);
+  if (value.type == TomlValue::Type::real) return value.real;
+  return std::nullopt;
+}
+
+Error wrong_type(const TomlValue& value, const std::string& name, const std::string& remedy) {
+  return {ErrorKind::input, value.place, name + " is " + shown(value), remedy};
+}
+
+}  // namespace
+
 std::string range_text(const Range& range, std::string_view unit) {
   std::string text;
   if (std::isfinite(range.min) && std::isfinite(range.max)) {
@@ -47,18 +59,6 @@ std::string range_text(const Range& range, std::string_view unit) {
 bool fits(double x, const Range& range) {
   return std::isfinite(x) && x <= range.max && (range.open_min ? x > range.min : x >= range.min);
 }
-
-std::optional<double> number_in(const TomlValue& value) {
-  if (value.type == TomlValue::Type::integer) return static_cast<double>(value.integer);
-  if (value.type == TomlValue::Type::real) return value.real;
-  return std::nullopt;
-}
-
-Error wrong_type(const TomlValue& value, const std::string& name, const std::string& remedy) {
-  return {ErrorKind::input, value.place, name + " is " + shown(value), remedy};
-}
-
-}  // namespace
 
 double to_number(const TomlValue& value, const std::string& name, std::string_view unit, const Range& range) {
   const auto x = number_in(value);

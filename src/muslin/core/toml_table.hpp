@@ -25,6 +25,10 @@ struct Range {
   static Range between(double min, double max) { return {min, max, false}; }
 };
 
+bool fits(double x, const Range& range);
+/// Returns the range in words, to stand behind "a number": " from 0 to 1 [m]".
+std::string range_text(const Range& range, std::string_view unit);
+
 /// Return a value as numbers; `name` is its name in messages and `unit` may be empty. Errors: input.
 double to_number(const TomlValue& value, const std::string& name, std::string_view unit,
                  const Range& range = {});

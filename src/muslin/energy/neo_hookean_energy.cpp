@@ -53,11 +53,11 @@ TetrahedronStencil stencil_of(const ElementSlabs<4>& slabs, const Tetrahedra& te
 }
 
 NeoHookeanLaw::Constants constants_of(const SolidModuli& moduli) {
-  require(NeoHookeanLaw::parameters[0].allows(moduli.young_modulus) && std::isfinite(moduli.young_modulus),
+  require(NeoHookeanLaw::parameters[0].allows(moduli.youngs_modulus) && std::isfinite(moduli.youngs_modulus),
           "Young's modulus of a solid is not positive", "give pascal");
   require(NeoHookeanLaw::parameters[1].allows(moduli.poisson),
           "the Poisson ratio of a solid is not between -1 and 0.5", "give 0 to 0.49");
-  return NeoHookeanLaw::constants(moduli.young_modulus, moduli.poisson);
+  return NeoHookeanLaw::constants(moduli.youngs_modulus, moduli.poisson);
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ NeoHookeanEnergy::NeoHookeanEnergy(std::shared_ptr<const Slabs> slabs, const Tet
       network.weights.push_back(springs.share[static_cast<std::size_t>(run.first + i)]);
   }
   network_ = std::make_shared<const SpringNetwork>(std::move(network));
-  const SpringModuli of_springs = springs_for(moduli.young_modulus, std::nullopt, Bracing::kuhn);
+  const SpringModuli of_springs = springs_for(moduli.youngs_modulus, std::nullopt, Bracing::kuhn);
   const std::array<double, 3> by_kind = {of_springs.edge, of_springs.face_diagonal, of_springs.body_diagonal};
   for (const SpringDirection& direction : springs.directions)
     stiffness_.push_back(lattice.width * by_kind[static_cast<std::size_t>(direction.kind)]);

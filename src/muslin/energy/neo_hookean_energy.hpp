@@ -22,7 +22,7 @@ namespace muslin {
 
 /// Young's modulus E > 0 [Pa], −1 < ν < ½.
 struct SolidModuli {
-  double young_modulus = 0;
+  double youngs_modulus = 0;
   double poisson = 0;
 };
 

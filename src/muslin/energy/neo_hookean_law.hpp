@@ -27,11 +27,11 @@ struct NeoHookeanLaw {
 
   static constexpr double none = std::numeric_limits<double>::infinity();
   static constexpr std::array<LawParameter, 2> parameters = {{
-      {"young_modulus", "Pa", 0, none, true, "Stress over strain of a bar that is pulled."},
+      {"youngs_modulus", "Pa", 0, none, true, "Stress over strain of a bar that is pulled."},
       {"poisson", "", -1, 0.5, true, "Contraction across over stretch along."},
   }};
-  static Constants constants(double young_modulus, double poisson) {
-    const double mu = young_modulus / (2 * (1 + poisson));
+  static Constants constants(double youngs_modulus, double poisson) {
+    const double mu = youngs_modulus / (2 * (1 + poisson));
     return {mu, mu / (1 - 2 * poisson)};
   }
 

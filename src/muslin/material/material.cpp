@@ -6,6 +6,17 @@
 #include "muslin/material/material_table.hpp"
 
 namespace muslin {
+namespace {
+
+std::vector<MaterialNumber> numbers_in(const schema::Table& table, const TomlValue& written) {
+  std::vector<MaterialNumber> numbers;
+  for (std::size_t i = 0; i < written.keys.size(); ++i)
+    if (written.items[i].type != TomlValue::Type::string)
+      numbers.push_back({written.keys[i], written.items[i].real, table.find(written.keys[i])->unit});
+  return numbers;
+}
+
+}  // namespace
 
 std::vector<std::string> material_names() {
   std::vector<std::string> names;
@@ -35,19 +46,25 @@ Material parse_material(std::string_view text, const std::string& file) {
   material.name = top.string("name", std::filesystem::path(file).stem().string());
   material.description = top.string("description", "");
   material.source = top.string("source", "");
-  const auto lattice = top.table("lattice", material_keys());
-  if (const auto shell = top.table("shell", shell_material_keys()))
-    material.shell = read_shell_material(*shell);
-  material.has_lattice = lattice.has_value();
-  if (!lattice && !material.shell) {
+  const TomlValue* shell = top.find("shell");
+  const TomlValue* lattice = top.find("lattice");
+  if (shell != nullptr) {
+    const schema::Table& keys = shell_material_table();
+    keys.read(keys.open(*shell, "`shell` of the material file"), material.shell.emplace());
+  }
+  material.has_lattice = lattice != nullptr;
+  if (!material.has_lattice && !material.shell) {
     throw Error(
         ErrorKind::input, Place{file, 0, 0}, "the material file has no table [lattice] or [shell]",
         "add [lattice] with density, edge_modulus, … or [shell] with areal_density, membrane_warp, …");
   }
-  if (lattice) {
-    lattice->number("density", "kg/m³", Range::positive());
-    if (!lattice->has("young_modulus")) lattice->number("edge_modulus", "N/m²", Range::non_negative());
-    read_material_keys(*lattice, material);
+  if (lattice != nullptr) {
+    const schema::Table& keys = lattice_material_table();
+    const TomlTable table = keys.open(*lattice, "`lattice` of the material file");
+    keys.read(table, material);
+    if (material.youngs_modulus && material.law == LatticeLaw::springs)
+      throw table.error("youngs_modulus", "a material file has springs by their three moduli",
+                        "give these, or law = \"neo_hookean\"");
   }
   if (const TomlValue* reference = top.find("reference")) {
     if (reference->type != TomlValue::Type::table) {
@@ -61,6 +78,16 @@ Material parse_material(std::string_view text, const std::string& file) {
     }
   }
   return material;
+}
+
+std::vector<MaterialNumber> lattice_numbers(const Material& material) {
+  if (!material.has_lattice) return {};
+  return numbers_in(lattice_material_table(), lattice_material_table().write(material));
+}
+
+std::vector<MaterialNumber> shell_numbers(const Material& material) {
+  if (!material.shell) return {};
+  return numbers_in(shell_material_table(), shell_material_table().write(*material.shell));
 }
 
 }  // namespace muslin

@@ -13,26 +13,43 @@
 
 namespace muslin {
 
+/// What fills the voxels of a lattice.
+enum class LatticeLaw {
+  springs,
+  neo_hookean,  ///< tetrahedra of a compressible Neo-Hookean solid
+};
+
 /// The quantities of a lattice, whose spring constants are modulus × voxel width, and those of a shell. A
 /// material has at least one of the two.
 struct Material {
   std::string name;
   std::string description;
   std::string source;                ///< source of the numbers
-  bool has_lattice = true;           ///< the next nine numbers are valid
+  bool has_lattice = true;           ///< the next ten settings are valid
   double density = 0;                ///< [kg/m³]
   double edge_modulus = 0;           ///< [N/m²]
   double face_diagonal_modulus = 0;  ///< [N/m²]
   double body_diagonal_modulus = 0;  ///< [N/m²]
   double volume_modulus = 0;         ///< stiffness of tetrahedral volume conservation [N/m²], 0: off
-  double young_modulus = 0;          ///< E of a Neo-Hookean solid in the lattice's tetrahedra [Pa], 0: none
-  double poisson = 0.3;              ///< ν of that solid
+  LatticeLaw law = LatticeLaw::springs;
+  std::optional<double> youngs_modulus;  ///< E of a solid [N/m²]
+  double poisson = 0.3;                  ///< ν of a solid
   double mass_damping = 0;           ///< Rayleigh α [1/s]
   double stiffness_damping = 0;      ///< Rayleigh β [s]
   std::optional<ShellMaterial> shell;
   /// Measured numbers of the real material, for information only.
   std::vector<std::pair<std::string, double>> reference;
 };
+
+/// A number of a material, by its key in material and scene files.
+struct MaterialNumber {
+  std::string key;
+  double value = 0;
+  std::string unit;  ///< empty: none
+};
+/// Return the numbers of the material; none if it has none of the kind.
+std::vector<MaterialNumber> lattice_numbers(const Material& material);
+std::vector<MaterialNumber> shell_numbers(const Material& material);
 
 /// Returns the names of the materials that come with muslin, in alphabetical order. They are compiled into
 /// the library.

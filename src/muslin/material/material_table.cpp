@@ -1,46 +1,75 @@
 #include "muslin/material/material_table.hpp"
 
+#include <fmt/format.h>
+
+#include "muslin/material/material.hpp"
+#include "muslin/schema/declare.hpp"
+
 namespace muslin {
 namespace {
 
-struct Quantity {
-  const char* key;
-  const char* unit;
-  double Material::*member;
-  Range range;
-};
+using schema::Declaration;
 
 // Upper bounds far above any material: they keep products of the quantities finite.
-const Quantity quantities[] = {
-    {"density", "kg/m³", &Material::density, {0, 1e6, true}},
-    {"edge_modulus", "N/m²", &Material::edge_modulus, {0, 1e15, false}},
-    {"face_diagonal_modulus", "N/m²", &Material::face_diagonal_modulus, {0, 1e15, false}},
-    {"body_diagonal_modulus", "N/m²", &Material::body_diagonal_modulus, {0, 1e15, false}},
-    {"volume_modulus", "N/m²", &Material::volume_modulus, {0, 1e15, false}},
-    {"young_modulus", "Pa", &Material::young_modulus, {0, 1e15, false}},
-    {"poisson", "", &Material::poisson, {-0.99, 0.499, false}},
-    {"mass_damping", "1/s", &Material::mass_damping, {0, 1e6, false}},
-    {"stiffness_damping", "s", &Material::stiffness_damping, {0, 1e6, false}},
-};
+constexpr Range modulus{0, 1e15, false};
+constexpr Range damping{0, 1e6, false};
+
+/// A modulus of springs, in whose place a scene may give Young's modulus.
+Declaration spring_modulus(const char* name, double Material::* member, const char* meaning) {
+  return schema::number(name, member)
+      .unit("N/m²")
+      .range(modulus)
+      .means(meaning)
+      .excludes("youngs_modulus", fmt::format("`{}` stands beside `youngs_modulus`, which decides it", name));
+}
+
+bool is_solid(const Material& material) { return material.law == LatticeLaw::neo_hookean; }
 
 }  // namespace
 
-const std::vector<std::string>& material_keys() {
-  static const std::vector<std::string> keys = [] {
-    std::vector<std::string> result;
-    for (const Quantity& quantity : quantities) result.emplace_back(quantity.key);
-    return result;
-  }();
-  return keys;
-}
-
-void read_material_keys(const TomlTable& table, Material& material) {
-  for (const Quantity& quantity : quantities) {
-    double& value = material.*quantity.member;
-    value = table.number(quantity.key, quantity.unit, quantity.range, value);
-  }
-  if (table.has("poisson") && material.young_modulus == 0)
-    throw table.error("poisson", "`poisson` stands without `young_modulus`", "give both");
+const schema::Table& lattice_material_table() {
+  static const schema::Table table = schema::table_of<Material>(
+      "[lattice]",
+      {schema::number("density", &Material::density)
+           .unit("kg/m³")
+           .range({0, 1e6, true})
+           .required_without({"base"})
+           .means("mass per volume"),
+       spring_modulus("edge_modulus", &Material::edge_modulus,
+                      "of springs along voxel edges; a spring's constant is modulus × voxel width")
+           .required_without({"base", "youngs_modulus"}),
+       spring_modulus("face_diagonal_modulus", &Material::face_diagonal_modulus,
+                      "of springs along face diagonals"),
+       spring_modulus("body_diagonal_modulus", &Material::body_diagonal_modulus,
+                      "of springs along body diagonals"),
+       schema::number("volume_modulus", &Material::volume_modulus)
+           .unit("N/m²")
+           .range(modulus)
+           .means("stiffness against a change of volume of each voxel; 0 is off"),
+       schema::number("mass_damping", &Material::mass_damping)
+           .unit("1/s")
+           .range(damping)
+           .means("Rayleigh's α: slows all motion, like a viscous fluid"),
+       schema::number("stiffness_damping", &Material::stiffness_damping)
+           .unit("s")
+           .range(damping)
+           .means("Rayleigh's β: slows stretching only"),
+       schema::word("law", &Material::law, {"springs", "neo_hookean"})
+           .needs("youngs_modulus", "give the modulus of the solid")
+           .shown_if<Material>(is_solid)
+           .means("`neo_hookean`: a solid of tetrahedra in place of springs, with a stated E and ν"),
+       schema::number("youngs_modulus", &Material::youngs_modulus)
+           .unit("N/m²")
+           .range({0, 1e15, true})
+           .shown_if<Material>(is_solid)
+           .means("of the solid; in a scene with springs, that of a large block along its axes, in place of "
+                  "the three moduli"),
+       schema::number("poisson", &Material::poisson)
+           .range({-0.99, 0.499, false})
+           .needs("law", "springs have a Poisson's ratio of their own; add law = \"neo_hookean\"")
+           .shown_if<Material>(is_solid)
+           .means("Poisson's ratio of the solid")});
+  return table;
 }
 
 }  // namespace muslin

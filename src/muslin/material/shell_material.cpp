@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "muslin/core/toml_table.hpp"
+#include "muslin/schema/declare.hpp"
 
 namespace muslin {
 namespace {
@@ -24,49 +25,97 @@ double lowest_bias(double warp, double weft) {
   return difference * difference / 4;
 }
 
-}  // namespace
-
-const std::vector<std::string>& shell_material_keys() {
-  static const std::vector<std::string> keys = {"areal_density",     "membrane_warp",  "membrane_weft",
-                                                "membrane_shear",    "poisson",        "bending_warp",
-                                                "bending_weft",      "bending_bias",   "mass_damping",
-                                                "stiffness_damping", "bending_damping"};
-  return keys;
+/// Derives what is not given from what is.
+void complete(const TomlTable& table, ShellMaterial& m) {
+  if (table.has("base")) return;
+  if (!table.has("membrane_weft")) m.membrane_weft = m.membrane_warp;
+  if (!table.has("poisson")) m.poisson = 0.25;
+  if (!table.has("membrane_shear"))
+    m.membrane_shear = std::sqrt(m.membrane_warp * m.membrane_weft) / (2 * (1 + m.poisson));
+  if (!table.has("bending_weft")) m.bending_weft = m.bending_warp;
+  if (!table.has("bending_bias")) m.bending_bias = bias_between(m.bending_warp, m.bending_weft);
+  if (!table.has("bending_damping")) m.bending_damping = m.stiffness_damping;
 }
 
-ShellMaterial read_shell_material(const TomlTable& table, const ShellMaterial* base) {
-  ShellMaterial m = base ? *base : ShellMaterial{};
-  const auto required = [&](const char* key, const char* unit, const Range& range, double& value) {
-    value = base ? table.number(key, unit, range, value) : table.number(key, unit, range);
-  };
-  const auto optional = [&](const char* key, const char* unit, const Range& range, double fallback,
-                            double& value) {
-    value = table.number(key, unit, range, base ? value : fallback);
-  };
-  required("areal_density", "kg/m²", {0, 1e6, true}, m.areal_density);
-  required("membrane_warp", "N/m", modulus, m.membrane_warp);
-  optional("membrane_weft", "N/m", modulus, m.membrane_warp, m.membrane_weft);
-  optional("poisson", "", {-0.99, 0.99, false}, 0.25, m.poisson);
-  optional("membrane_shear", "N/m", modulus,
-           std::sqrt(m.membrane_warp * m.membrane_weft) / (2 * (1 + m.poisson)), m.membrane_shear);
-  required("bending_warp", "N·m", modulus, m.bending_warp);
-  optional("bending_weft", "N·m", modulus, m.bending_warp, m.bending_weft);
-  optional("bending_bias", "N·m", modulus, bias_between(m.bending_warp, m.bending_weft), m.bending_bias);
-  optional("mass_damping", "1/s", damping, 0, m.mass_damping);
-  optional("stiffness_damping", "s", damping, 0, m.stiffness_damping);
-  optional("bending_damping", "s", damping, m.stiffness_damping, m.bending_damping);
+void check_bias(const ShellMaterial& m, const schema::Subject& subject) {
   const double lowest = lowest_bias(m.bending_warp, m.bending_weft);
-  if (m.bending_bias < lowest * (1 - 1e-12)) {
-    const char* key = table.has("bending_bias") ? "bending_bias" : "bending_warp";
-    throw table.error(
-        key,
-        fmt::format(
-            "with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m some direction would have a negative "
-            "bending rigidity",
-            m.bending_bias, m.bending_warp, m.bending_weft),
-        fmt::format("give `bending_bias` at least {:.4g}", lowest));
-  }
-  return m;
+  if (m.bending_bias >= lowest * (1 - 1e-12)) return;
+  const bool bias_is_given = subject.table() == nullptr || subject.table()->has("bending_bias");
+  throw subject.error(
+      bias_is_given ? "bending_bias" : "bending_warp",
+      fmt::format("with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m some direction would have a negative "
+                  "bending rigidity",
+                  m.bending_bias, m.bending_warp, m.bending_weft),
+      fmt::format("give `bending_bias` at least {:.4g}", lowest));
+}
+
+schema::Table declared() {
+  using schema::number;
+  schema::Table table = schema::table_of<ShellMaterial>(
+      "[shell]", {number("areal_density", &ShellMaterial::areal_density)
+                      .unit("kg/m²")
+                      .range({0, 1e6, true})
+                      .required_without({"base"})
+                      .means("mass per area"),
+                  number("membrane_warp", &ShellMaterial::membrane_warp)
+                      .unit("N/m")
+                      .range(modulus)
+                      .required_without({"base"})
+                      .means("force per width and strain along warp: Young's modulus × thickness"),
+                  number("membrane_weft", &ShellMaterial::membrane_weft)
+                      .unit("N/m")
+                      .range(modulus)
+                      .otherwise("`membrane_warp`")
+                      .means("along weft"),
+                  number("membrane_shear", &ShellMaterial::membrane_shear)
+                      .unit("N/m")
+                      .range(modulus)
+                      .otherwise("as in an isotropic sheet")
+                      .means("force per width and radian"),
+                  number("poisson", &ShellMaterial::poisson)
+                      .range({-0.99, 0.99, false})
+                      .otherwise("0.25")
+                      .means("geometric mean of the two directions' Poisson's ratios"),
+                  number("bending_warp", &ShellMaterial::bending_warp)
+                      .unit("N·m")
+                      .range(modulus)
+                      .required_without({"base"})
+                      .means("moment per width and curvature, warp bent"),
+                  number("bending_weft", &ShellMaterial::bending_weft)
+                      .unit("N·m")
+                      .range(modulus)
+                      .otherwise("`bending_warp`")
+                      .means("weft bent"),
+                  number("bending_bias", &ShellMaterial::bending_bias)
+                      .unit("N·m")
+                      .range(modulus)
+                      .otherwise("between the two")
+                      .means("bent at 45°; at least (√warp − √weft)²/4"),
+                  number("mass_damping", &ShellMaterial::mass_damping)
+                      .unit("1/s")
+                      .range(damping)
+                      .means("Rayleigh's α: slows all motion"),
+                  number("stiffness_damping", &ShellMaterial::stiffness_damping)
+                      .unit("s")
+                      .range(damping)
+                      .means("Rayleigh's β of stretch and shear"),
+                  number("bending_damping", &ShellMaterial::bending_damping)
+                      .unit("s")
+                      .range(damping)
+                      .otherwise("`stiffness_damping`")
+                      .means("Rayleigh's β of bending")});
+  table.complete = [](const TomlTable& given, void* settings) {
+    complete(given, *static_cast<ShellMaterial*>(settings));
+  };
+  schema::add_rule<ShellMaterial>(table, check_bias);
+  return table;
+}
+
+}  // namespace
+
+const schema::Table& shell_material_table() {
+  static const schema::Table table = declared();
+  return table;
 }
 
 }  // namespace muslin

@@ -1,14 +1,11 @@
 // ShellMaterial holds the material data of a shell, per area and per width, as fabrics are measured.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "muslin/api.hpp"
-
 namespace muslin {
 
-class TomlTable;
+namespace schema {
+struct Table;
+}
 
 struct ShellMaterial {
   double areal_density = 0;      ///< [kg/m²]
@@ -24,13 +21,10 @@ struct ShellMaterial {
   double bending_damping = 0;    ///< Rayleigh β of bending [s]
 };
 
-/// Returns areal_density, membrane_warp, …: the keys of a table of shell numbers.
-MUSLIN_API const std::vector<std::string>& shell_material_keys();
-
-/// Returns the numbers given in `table`, else those of `base`. Without a base areal_density, membrane_warp
-/// and bending_warp are required; weft is as warp, shear as in an isotropic sheet, bias between warp and
-/// weft, bending_damping as stiffness_damping, unless given. Errors: input, also for a bias so low that some
-/// direction between would have a negative rigidity.
-ShellMaterial read_shell_material(const TomlTable& table, const ShellMaterial* base = nullptr);
+/// The table [shell] of a material file. Without a `base` beside them areal_density, membrane_warp and
+/// bending_warp are required; weft is as warp, shear as in an isotropic sheet, bias between warp and weft,
+/// bending_damping as stiffness_damping, unless given. A bias so low that some direction between would have a
+/// negative rigidity is an error.
+const schema::Table& shell_material_table();
 
 }  // namespace muslin

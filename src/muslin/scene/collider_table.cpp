@@ -1,0 +1,221 @@
+#include "muslin/scene/collider_table.hpp"
+
+#include "muslin/geometry/inspect.hpp"
+#include "muslin/scene/common_keys.hpp"
+#include "muslin/scene/names.hpp"
+#include "muslin/schema/declare.hpp"
+
+namespace muslin {
+namespace {
+
+using schema::Key;
+using schema::Subject;
+using Collider = ColliderSettings;
+using Shape = ColliderSettings::Shape;
+
+constexpr double smallest = 1e-6;  // length of a shape [m]
+constexpr Range length{smallest, largest_coordinate, false};
+
+Key center_key(const char* meaning) {
+  return schema::vector("center", &Collider::center).unit("m").means(meaning);
+}
+
+Key radius_key() {
+  return schema::number("radius", &Collider::radius).unit("m").range(length).required().means("its radius");
+}
+
+Key rotate_key(const char* meaning) {
+  return schema::vector("rotate", &Collider::rotate).unit("degrees").means(meaning);
+}
+
+void read_points(const Key& key, const TomlTable& table, Collider& collider) {
+  const TomlValue& points = *table.find(key.name);
+  if (points.type != TomlValue::Type::array || points.items.size() != 2)
+    throw table.error(key.name, fmt::format("{} has no two `points`", table.title()), key.missing);
+  for (std::size_t i = 0; i < 2; ++i)
+    collider.points[i] = to_vector(points.items[i], "a point of `points`", key.unit);
+}
+
+Key points_key() {
+  Key key =
+      schema::custom<Collider>("points", {schema::Type::points}, read_points,
+                               [](const Key& k, const Collider& collider, TomlValue& out) {
+                                 schema::append(out, k.name,
+                                                schema::list({schema::vector_value(collider.points[0]),
+                                                              schema::vector_value(collider.points[1])}));
+                               })
+          .unit("m")
+          .required("give the ends of its axis, [[x, y, z], [x, y, z]]")
+          .means("the two ends of its axis, `[[x, y, z], [x, y, z]]`; round caps reach a radius beyond");
+  key.count = 2;
+  return key;
+}
+
+/// The keys of shapes that may have mass: all but the plane.
+std::vector<Key> mass_keys() {
+  const char* remedy = "give a `density` to let it move by itself, or `keyframes`";
+  const auto is_free = [](const Collider& collider) { return collider.is_free(); };
+  return {
+      schema::number("density", &Collider::density)
+          .unit("kg/m³")
+          .range({1e-6, 1e9, false})
+          .excludes("sequence", "`density` stands beside `sequence`, which says how it moves")
+          .excludes("keyframes", "`density` makes a body that moves by itself, `keyframes` say how it moves",
+                    "keep one of them; a [[pin]] holds or moves a body for a while")
+          .means("makes it a rigid body of this density; a mesh must be closed. Without it gravity and other "
+                 "forces do not act on it"),
+      schema::vector("velocity", &Collider::velocity)
+          .unit("m/s")
+          .needs("density", remedy)
+          .shown_if<Collider>(is_free)
+          .means("at the start; only with a density"),
+      schema::vector("angular_velocity", &Collider::angular_velocity)
+          .unit("degrees/s")
+          .needs("density", remedy)
+          .shown_if<Collider>(is_free)
+          .means("at the start, about its centre of mass, along the axis of rotation; only with a density")};
+}
+
+schema::Table shape_table(Shape shape, std::vector<Key> keys) {
+  if (shape != Shape::plane)
+    for (Key& key : mass_keys()) keys.push_back(std::move(key));
+  return schema::table_of<Collider>(name_of(collider_shape_names(), shape), std::move(keys));
+}
+
+const schema::Table& plane_table() {
+  static const schema::Table table = [] {
+    schema::Table plane = shape_table(
+        Shape::plane, {center_key("any point of it"),
+                       schema::direction("normal", &Collider::normal, "[0, 1, 0]")
+                           .means("points to the side where bodies are; they cannot reach the other side")});
+    schema::add_rule<Collider>(plane, [](const Collider& collider, const Subject& subject) {
+      if (!(std::abs(collider.normal.norm() - 1) <= 1e-9))
+        throw subject.error("normal", "`normal` is not of length 1", "normalise it");
+      if (collider.is_free())
+        throw subject.error("density", "a plane has a `density`", "take it out: planes stand still");
+    });
+    return plane;
+  }();
+  return table;
+}
+
+const schema::Table& sphere_table() {
+  static const schema::Table table = shape_table(Shape::sphere, {center_key("its centre"), radius_key()});
+  return table;
+}
+
+const schema::Table& capsule_table() {
+  static const schema::Table table = [] {
+    schema::Table capsule = shape_table(Shape::capsule, {points_key(), radius_key()});
+    schema::add_rule<Collider>(capsule, [](const Collider& collider, const Subject& subject) {
+      if (!((collider.points[1] - collider.points[0]).stableNorm() >= smallest))
+        throw subject.error("points", "the two `points` are one", "use `shape = \"sphere\"` for a ball");
+    });
+    return capsule;
+  }();
+  return table;
+}
+
+const schema::Table& box_table() {
+  static const schema::Table table = shape_table(
+      Shape::box,
+      {center_key("its centre"),
+       schema::vector("size", &Collider::size).unit("m").range(length).required().means("along x, y and z"),
+       rotate_key("as of a body, about its centre")});
+  return table;
+}
+
+const schema::Table& mesh_table() {
+  static const schema::Table table = [] {
+    schema::Table mesh = shape_table(
+        Shape::mesh,
+        {schema::path("mesh", &Collider::mesh, &Collider::mesh_place)
+             .required()
+             .means("the same formats as for a body; open meshes stop bodies from both sides"),
+         schema::vector("translate", &Collider::translate).unit("m").means("as of a body"),
+         rotate_key("as of a body"), scale_key(&Collider::scale),
+         schema::path("sequence", &Collider::sequence, &Collider::sequence_place)
+             .means(
+                 "motion, in place of `keyframes`: a file with the position of every vertex of the mesh per "
+                 "frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. `translate`, `rotate` and "
+                 "`scale` "
+                 "apply to it as to the mesh"),
+         schema::number("frame_rate", &Collider::frame_rate)
+             .unit("1/s")
+             .range({1e-6, 1e6, false})
+             .otherwise("the scene's")
+             .needs("sequence", "take it out")
+             .means("frames per second of the sequence; not for an `.mdd`, which stores its own frame times"),
+         schema::number("start", &Collider::start)
+             .unit("s")
+             .range({-1e9, 1e9, false})
+             .otherwise("as the file says, or 0")
+             .needs("sequence", "take it out")
+             .means("time of the first sample; the collider stands still before the first and after the last "
+                    "sample")});
+    schema::add_rule<Collider>(mesh, [](const Collider& collider, const Subject& subject) {
+      if (collider.frame_rate && collider.sequence.ends_with(".mdd"))
+        throw subject.error("frame_rate", "an .mdd stores its own frame times", "take `frame_rate` out");
+    });
+    return mesh;
+  }();
+  return table;
+}
+
+schema::Table declared() {
+  schema::Table table = schema::table_of<Collider>(
+      "[[collider]]",
+      {name_key<Collider>("`sphere0`, `box1`, …, the mesh's file name")
+           .means("different for each body and collider"),
+       schema::word("shape", &Collider::shape, collider_shape_names())
+           .required()
+           .means("`\"plane\"`, `\"sphere\"`, `\"capsule\"`, `\"box\"` or `\"mesh\"`"),
+       schema::vector("pivot", &Collider::pivot)
+           .unit("m")
+           .otherwise("middle of the shape; `center` of a plane")
+           .needs("keyframes", "take it out")
+           .means("point about which `rotate` of the keyframes turns, before `translate`"),
+       schema::within(
+           &Collider::motion,
+           motion_key()
+               .excludes("sequence", "`keyframes` stands beside `sequence`, which says how it moves")
+               .may_change_on_resume()
+               .means("motion relative to its initial position: a list of tables; linear between them, "
+                      "rotation at "
+                      "constant speed; times ascend")),
+       schema::truth("contact", &Collider::contact)
+           .means("`false` excludes it from contact; it is only drawn"),
+       friction_key(&Collider::friction),
+       schema::colour("colour", &Collider::colour)
+           .may_change_on_resume()
+           .otherwise("grey")
+           .means("colour in pictures")});
+  schema::choose(table, "shape", &Collider::shape,
+                 {{"plane", "", plane_table},
+                  {"sphere", "", sphere_table},
+                  {"capsule", "", capsule_table},
+                  {"box", "", box_table},
+                  {"mesh", "", mesh_table}});
+  for (Key& key : table.keys) {
+    if (key.name == "keyframes")  // a rigid body has none
+      key.shown = [](const void* s) { return !static_cast<const Collider*>(s)->is_free(); };
+  }
+  return table;
+}
+
+}  // namespace
+
+const schema::Table& collider_table() {
+  static const schema::Table table = declared();
+  return table;
+}
+
+void finish_collider(const TomlTable& table, std::size_t index, Collider& collider, const Scene& scene) {
+  const std::string stem = std::filesystem::path(collider.mesh).stem().string();
+  const std::string& shape = name_of(collider_shape_names(), collider.shape);
+  complete_name(table, stem.empty() ? fmt::format("{}{}", shape, index) : stem, collider.name);
+  require_new_name(table, scene.bodies, "body", "collider", collider.name);
+  require_new_name(table, scene.colliders, "collider", "collider", collider.name);
+}
+
+}  // namespace muslin

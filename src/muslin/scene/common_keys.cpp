@@ -1,0 +1,131 @@
+#include "muslin/scene/common_keys.hpp"
+
+#include <algorithm>
+
+#include "muslin/core/nearest_name.hpp"
+#include "muslin/scene/placement.hpp"
+
+namespace muslin {
+namespace {
+
+using schema::Key;
+using schema::Subject;
+using schema::Type;
+
+template <class S>
+schema::Declaration scale_of(Vec3 S::* member) {
+  Key key = schema::vector("scale", member).range(Range::positive());
+  key.types = {Type::number, Type::vector};
+  key.read = [member](const Key& k, const TomlTable& table, void* s) {
+    const TomlValue& value = *table.find(k.name);
+    const std::string name = fmt::format("`{}` of {}", k.name, table.title());
+    const bool per_axis = value.type == TomlValue::Type::array;
+    static_cast<S*>(s)->*member = per_axis ? to_vector(value, name, k.unit, k.range)
+                                           : Vec3(Vec3::Constant(to_number(value, name, k.unit, k.range)));
+  };
+  return schema::Declaration(std::move(key)).otherwise("1").means("a number or one per axis; applied first");
+}
+
+}  // namespace
+
+void require_name(const std::string& name, const Place& place) {
+  const bool bad = name.empty() || name.size() > 100 || name.front() == '.' ||
+                   name.find_first_of("/\\:*?\"<>|,") != std::string::npos ||
+                   std::any_of(name.begin(), name.end(),
+                               [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; });
+  if (bad) {
+    throw Error(ErrorKind::input, place, "`" + name.substr(0, 40) + "` cannot be a name",
+                "use 1 to 100 letters, digits, `_`, `-`, `.` or spaces, not starting with a dot");
+  }
+}
+
+schema::Declaration scale_key(Vec3 BodySettings::* member) { return scale_of(member); }
+schema::Declaration scale_key(Vec3 ColliderSettings::* member) { return scale_of(member); }
+
+void check_window(double from, double until, const Subject& subject) {
+  if (!(until > from))
+    throw subject.error("until", fmt::format("`until` = {} s is not after `from` = {} s", until, from),
+                        "let it end after it begins");
+}
+
+const schema::Table& motion_keyframe_table() {
+  static const schema::Table table = schema::table_of<Motion::Key>(
+      "keyframes of a motion",
+      {schema::number("time", &Motion::Key::time).unit("s").required().means("after that of the one before"),
+       schema::vector("translate", &Motion::Key::translate).unit("m").means("displacement"),
+       schema::custom<Motion::Key>(
+           "rotate", {Type::vector},
+           [](const Key& key, const TomlTable& given, Motion::Key& s) {
+             s.rotate = rotation_from_degrees(given.vector(key.name, key.unit));
+           },
+           [](const Key&, const Motion::Key& s, TomlValue& out) {
+             schema::append(out, "quaternion",
+                            schema::list({schema::real(s.rotate.w()), schema::real(s.rotate.x()),
+                                          schema::real(s.rotate.y()), schema::real(s.rotate.z())}));
+           })
+           .unit("degrees")
+           .otherwise("`[0, 0, 0]`")
+           .means("turn about `pivot`: about the x axis, then y, then z")});
+  return table;
+}
+
+schema::Declaration motion_key() {
+  return schema::keyframes("keyframes", &Motion::keys, motion_keyframe_table).otherwise("stands still");
+}
+
+std::vector<std::string> movable_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const BodySettings& body : scene.bodies) names.push_back(body.name);
+  for (const ColliderSettings& collider : scene.colliders)
+    if (collider.is_free()) names.push_back(collider.name);
+  return names;
+}
+
+bool is_rigid(const Scene& scene, const std::string& name) {
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                     [&](const ColliderSettings& collider) { return collider.name == name; });
+}
+
+void require_movable(const Scene& scene) {
+  if (!movable_names(scene).empty()) return;
+  throw Error(ErrorKind::input, {scene.file.string(), 0, 0}, "the scene has no body",
+              "add a [[body]] with `mesh`, `material` and `voxel_width`, or `model = \"shell\"`");
+}
+
+void resolve_body(const TomlTable& table, const Scene& scene, bool all_allowed, std::string& body) {
+  require_movable(scene);
+  const std::vector<std::string> names = movable_names(scene);
+  if (!table.has("body")) {
+    if (all_allowed) return;
+    if (scene.bodies.size() == 1 || names.size() == 1) {
+      body = names.front();
+      return;
+    }
+    throw Error(ErrorKind::input, table.place(),
+                fmt::format("{} does not say which of the {} bodies it means", table.title(), names.size()),
+                "add `body = …`, one of " + name_list(names));
+  }
+  if (std::find(names.begin(), names.end(), body) != names.end()) return;
+  if (is_rigid(scene, body)) {
+    throw table.error("body",
+                      fmt::format("the collider `{}` has no mass, so nothing holds or pushes it", body),
+                      "give it a `density`, or move it by `keyframes` of its own");
+  }
+  throw table.error("body", fmt::format("there is no body `{}`", body), name_advice(body, names));
+}
+
+void complete_name(const TomlTable& table, const std::string& fallback, std::string& name) {
+  if (table.has("name")) return;
+  name = fallback;
+  require_name(name, table.place());
+}
+
+void refuse_name(const TomlTable& table, const std::string& other_kind, const std::string& kind,
+                 const std::string& name) {
+  const std::string both = other_kind == kind ? fmt::format("two of [[{}]]", kind)
+                                              : fmt::format("a [[{}]] and a [[{}]]", other_kind, kind);
+  throw table.error("name", fmt::format("there are {} called `{}`", both, name),
+                    "give each a `name` of its own");
+}
+
+}  // namespace muslin

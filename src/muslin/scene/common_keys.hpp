@@ -1,0 +1,86 @@
+// Declares keys that several tables of a scene have, and reads what depends on the rest of the scene: names,
+// and which body is meant.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "muslin/constraint/pin.hpp"
+#include "muslin/scene/scene.hpp"
+#include "muslin/schema/declare.hpp"
+
+namespace muslin {
+
+/// Throws Error(input) unless `name` is valid in file names and paths: not empty, no separators or control
+/// characters.
+void require_name(const std::string& name, const Place& place);
+
+/// The key `name`; `otherwise` states the name where it is not given.
+template <class S>
+schema::Declaration name_key(std::string otherwise) {
+  return schema::custom<S>(
+             "name", {schema::Type::text},
+             [](const schema::Key& key, const TomlTable& table, S& s) {
+               s.name = table.string(key.name);
+               require_name(s.name, table.place(key.name));
+             },
+             [](const schema::Key& key, const S& s, TomlValue& out) {
+               schema::append(out, key.name, schema::words(s.name));
+             })
+      .otherwise(std::move(otherwise));
+}
+
+/// The key `scale`: a number or one per axis.
+schema::Declaration scale_key(Vec3 BodySettings::* member);
+schema::Declaration scale_key(Vec3 ColliderSettings::* member);
+
+template <class S>
+schema::Declaration friction_key(std::optional<double> S::* member) {
+  return schema::number("friction", member)
+      .range({0, 100, false})
+      .may_change_on_resume()
+      .otherwise("that of `[contact]`")
+      .means("Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean");
+}
+
+/// `from` and `until`; `otherwise` states the end where it is not given. check_window is their rule.
+template <class S>
+std::vector<schema::Key> window_keys(double S::* from, double S::* until, const char* from_means,
+                                     const char* until_means, const char* otherwise) {
+  schema::Key end = schema::number("until", until).unit("s").otherwise(otherwise).means(until_means);
+  end.check = nullptr;  // may be infinite
+  return {schema::number("from", from).unit("s").means(from_means), end};
+}
+/// Throws subject.error(…) unless until > from.
+void check_window(double from, double until, const schema::Subject& subject);
+
+/// `keyframes` of a motion.
+schema::Declaration motion_key();
+const schema::Table& motion_keyframe_table();  ///< of Motion::Key
+
+/// Returns the names of what has mass: bodies, and colliders with a density.
+std::vector<std::string> movable_names(const Scene& scene);
+/// True if a collider has this name.
+bool is_rigid(const Scene& scene, const std::string& name);
+/// Throws Error(input) if the scene has nothing that moves.
+void require_movable(const Scene& scene);
+/// Replaces an empty name by that of the only body, or, if `all_allowed`, leaves it empty for all. Errors:
+/// input.
+void resolve_body(const TomlTable& table, const Scene& scene, bool all_allowed, std::string& body);
+
+/// Gives the item its name if it has none, and refuses one that `others` have. Items are of the lists
+/// [[kind]], others of [[other_kind]].
+void complete_name(const TomlTable& table, const std::string& fallback, std::string& name);
+[[noreturn]] void refuse_name(const TomlTable& table, const std::string& other_kind, const std::string& kind,
+                              const std::string& name);
+template <class T>
+void require_new_name(const TomlTable& table, const std::vector<T>& others, const std::string& other_kind,
+                      const std::string& kind, const std::string& name) {
+  for (const T& other : others)
+    if (other.name == name) refuse_name(table, other_kind, kind, name);
+}
+
+}  // namespace muslin

@@ -1,0 +1,69 @@
+#include "muslin/scene/pin_table.hpp"
+
+#include "muslin/scene/common_keys.hpp"
+#include "muslin/scene/selection_table.hpp"
+#include "muslin/schema/declare.hpp"
+
+namespace muslin {
+namespace {
+
+std::string both_move(const char* key) {
+  return fmt::format("`{}` and `sequence` both say how the pin moves", key);
+}
+
+schema::Table declared() {
+  schema::Table table = schema::table_of<PinSettings>(
+      "[[pin]]",
+      {name_key<PinSettings>("`pin0`, `pin1`, …").means("name in messages and in `selections.json`"),
+       schema::text("body", &PinSettings::body)
+           .otherwise("the only body")
+           .means("a body, or a collider with a density; must be given if there are several"),
+       schema::nested("where", &PinSettings::where, selection_table)
+           .otherwise("must be given")
+           .means("selection of vertices; a collider with a density is held as a whole, without `where`")});
+  for (schema::Key& key : window_keys(&PinSettings::from, &PinSettings::until,
+                                      "start time; the vertices are held at their positions at that time",
+                                      "release time, after `from`", "never"))
+    table.keys.push_back(key);
+  table.keys.push_back(schema::vector("pivot", &PinSettings::pivot)
+                           .unit("m")
+                           .otherwise("centre of its vertices at rest")
+                           .excludes("sequence", both_move("pivot"))
+                           .means("point about which `rotate` turns"));
+  table.keys.push_back(
+      schema::path("sequence", &PinSettings::sequence, &PinSettings::sequence_place)
+          .means("motion, in place of `keyframes`: a file with the position of every vertex of the body's "
+                 "mesh per "
+                 "frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. Metres, y up, in the world"));
+  table.keys.push_back(schema::within(
+      &PinSettings::motion,
+      motion_key()
+          .excludes("sequence", both_move("keyframes"))
+          .means("motion: a list of tables; linear between them, rotation at constant speed; times ascend")));
+  schema::add_rule<PinSettings>(table, [](const PinSettings& pin, const schema::Subject& subject) {
+    check_window(pin.from, pin.until, subject);
+  });
+  return table;
+}
+
+}  // namespace
+
+const schema::Table& pin_table() {
+  static const schema::Table table = declared();
+  return table;
+}
+
+void finish_pin(const TomlTable& table, std::size_t index, PinSettings& pin, const Scene& scene) {
+  complete_name(table, fmt::format("pin{}", index), pin.name);
+  resolve_body(table, scene, false, pin.body);
+  if (!is_rigid(scene, pin.body)) {
+    if (!table.has("where")) refuse_without_selection(table);
+  } else if (table.has("where")) {
+    throw table.error("where", "a rigid body is held as a whole", "take `where` out");
+  } else if (table.has("sequence")) {
+    throw table.error("sequence", "a rigid body does not follow a sequence", "move it by `keyframes`");
+  }
+  require_new_name(table, scene.pins, "pin", "pin", pin.name);
+}
+
+}  // namespace muslin

@@ -1,0 +1,210 @@
+#include "muslin/scene/scene_table.hpp"
+
+#include "muslin/scene/body_table.hpp"
+#include "muslin/scene/collider_table.hpp"
+#include "muslin/scene/common_keys.hpp"
+#include "muslin/scene/force_table.hpp"
+#include "muslin/scene/names.hpp"
+#include "muslin/scene/pin_table.hpp"
+#include "muslin/scene/scene.hpp"
+#include "muslin/schema/declare.hpp"
+
+namespace muslin {
+namespace {
+
+using schema::Key;
+using schema::Type;
+
+constexpr double max_frames = 1e6;
+constexpr int max_steps = 1'000'000;  // of a frame
+
+/// None: "auto".
+std::optional<int> read_steps(const Key& key, const TomlTable& table) {
+  const TomlValue& value = *table.find(key.name);
+  if (value.type == TomlValue::Type::string && value.string == "auto") return std::nullopt;
+  if (value.type != TomlValue::Type::integer || value.integer < 1 || value.integer > max_steps) {
+    throw table.error(key.name, "`steps_per_frame` is neither \"auto\" nor a number of steps",
+                      fmt::format("write \"auto\" or a whole number from 1 to {}", max_steps));
+  }
+  return static_cast<int>(value.integer);
+}
+
+Key steps_key() {
+  Key key = schema::custom<TimeSettings>(
+                "steps_per_frame", {Type::word, Type::whole_number},
+                [](const Key& k, const TomlTable& table, TimeSettings& time) {
+                  time.steps_per_frame = read_steps(k, table);
+                },
+                [](const Key& k, const TimeSettings& time, TomlValue& out) {
+                  const auto& steps = time.steps_per_frame;
+                  schema::append(out, k.name, steps ? schema::whole(*steps) : schema::words("auto"));
+                })
+                .range({1, max_steps, false})
+                .may_change_on_resume()
+                .means("time steps per frame: `\"auto\"`, as many as the motion needs, or a whole number");
+  key.choices = {"auto"};
+  key.check = [](const Key& k, const void* s, const schema::Subject& subject) {
+    const auto& steps = static_cast<const TimeSettings*>(s)->steps_per_frame;
+    if (steps) schema::WholeNumberCodec{}.check(k, *steps, subject);
+  };
+  return key;
+}
+
+const schema::Table& time_table() {
+  static const schema::Table table = [] {
+    schema::Table time = schema::table_of<TimeSettings>(
+        "[time]", {schema::number("duration", &TimeSettings::duration)
+                       .unit("s")
+                       .range({0, 1e9, true})
+                       .may_change_on_resume()
+                       .means("simulated time; rounded up to whole frames, at most a million of them"),
+                   schema::number("frame_rate", &TimeSettings::frame_rate)
+                       .unit("1/s")
+                       .range({1e-6, 1e6, false})
+                       .means("frames per second"),
+                   steps_key()});
+    schema::add_rule<TimeSettings>(time, [](const TimeSettings& settings, const schema::Subject& subject) {
+      if (settings.duration * settings.frame_rate <= max_frames) return;
+      throw subject.error("duration",
+                          fmt::format("{} s at {} frames per second are more than a million frames",
+                                      settings.duration, settings.frame_rate),
+                          "shorten `duration` or lower `frame_rate`");
+    });
+    return time;
+  }();
+  return table;
+}
+
+const schema::Table& solver_table() {
+  static const schema::Table table = schema::table_of<SolverSettings>(
+      "[solver]",
+      {schema::word("integrator", &SolverSettings::integrator, integrator_names())
+           .means("`\"implicit_euler\"`: first order, always stable, damps · `\"bdf2\"`: second order, "
+                  "always stable, "
+                  "damps little · `\"linearly_implicit_euler\"`: one Newton step · `\"symplectic_euler\"`: "
+                  "explicit, "
+                  "only stable for small steps"),
+       schema::word("effort", &SolverSettings::effort, effort_names())
+           .means("how accurately steps are solved: `\"draft\"`, to see whether a scene works · "
+                  "`\"normal\"`, for "
+                  "pictures · `\"exact\"`, for measurements"),
+       schema::number("tolerance", &SolverSettings::tolerance)
+           .range({0, 1, true})
+           .otherwise("that of `effort`: 1, 0.2 or 1e-3")
+           .shown_as<SolverSettings>(
+               [](const SolverSettings& solver) { return schema::real(solver.error_tolerance()); })
+           .means(
+               "a step has converged when its estimated error, as displacement, is at most this share of the "
+               "displacement that the present accelerations cause in a step"),
+       schema::number("linear_tolerance", &SolverSettings::linear_tolerance)
+           .range({1e-16, 0.5, false})
+           .means("relative residual of the linear solve of `linearly_implicit_euler`")});
+  return table;
+}
+
+const schema::Table& contact_table() {
+  static const schema::Table table = schema::table_of<ContactSettings>(
+      "[contact]",
+      {schema::number("distance", &ContactSettings::distance)
+           .unit("m")
+           .range({1e-9, 1e6, false})
+           .otherwise("see below")
+           .shown_as<ContactSettings>([](const ContactSettings& contact) {  // null where the bodies decide
+             return contact.distance ? schema::real(*contact.distance) : schema::null();
+           })
+           .means("contact distance: surfaces repel each other where the gap is below it"),
+       schema::number("friction", &ContactSettings::friction)
+           .range({0, 100, false})
+           .means("Coulomb's coefficient of each body and collider without its own `friction`")});
+  return table;
+}
+
+const schema::Table& probe_table() {
+  static const schema::Table table = schema::table_of<ProbeSettings>(
+      "[[probe]]", {name_key<ProbeSettings>("`probe0`, `probe1`, …").means("name in `probes.csv`"),
+                    schema::text("body", &ProbeSettings::body)
+                        .otherwise("the only body")
+                        .means("must be given if there are several"),
+                    schema::vector("at", &ProbeSettings::at)
+                        .unit("m")
+                        .required()
+                        .means("a point of the body or collider at the start, which moves with it")});
+  return table;
+}
+
+/// Warns of settings that the integrator does not use.
+void warn_of_unused(const TomlTable& table, Scene& scene) {
+  const SolverSettings& solver = scene.solver;
+  const Integrator integrator = solver.integrator;
+  const bool newton = integrator == Integrator::implicit_euler || integrator == Integrator::bdf2;
+  const bool linear = integrator == Integrator::linearly_implicit_euler;
+  const bool adaptive = !scene.time.steps_per_frame;
+  const std::string& name = name_of(integrator_names(), integrator);
+  const auto warn = [&](const char* key, const std::string& effect, const std::string& remedy) {
+    if (table.has(key))
+      scene.warnings.push_back(
+          fmt::format("[solver] `{}` has no effect on {}: take it out, {}", key, effect, remedy));
+  };
+  if (!linear) warn("linear_tolerance", name, "or choose `integrator = \"linearly_implicit_euler\"`");
+  if (newton) return;
+  const std::string choose = "or choose `integrator = \"implicit_euler\"` or `\"bdf2\"`";
+  warn("tolerance", name, choose);
+  if (!linear) warn("effort", name, choose);
+  // With linearly_implicit_euler an effort has one effect: automatic steps of drafts are longer.
+  if (linear && !adaptive)
+    warn("effort", name + " with a number of `steps_per_frame`",
+         "set `steps_per_frame = \"auto\"`, " + choose);
+  if (linear && adaptive && solver.effort == Effort::exact) warn("effort", name + " but for drafts", choose);
+}
+
+void finish_probe(const TomlTable& table, std::size_t index, ProbeSettings& probe, const Scene& scene) {
+  complete_name(table, fmt::format("probe{}", index), probe.name);
+  if (!table.has("body") || !is_rigid(scene, probe.body)) resolve_body(table, scene, false, probe.body);
+  require_new_name(table, scene.probes, "probe", "probe", probe.name);
+}
+
+schema::Table declared() {
+  return schema::table_of<Scene>(
+      "scene", {schema::text("title", &Scene::title)
+                    .otherwise("the file's name")
+                    .may_change_on_resume()
+                    .means("name for the reader"),
+                schema::section("time", &Scene::time, time_table, schema::nothing)
+                    .otherwise("see below")
+                    .means("duration, frames and time steps"),
+                schema::section("solver", &Scene::solver, solver_table, warn_of_unused)
+                    .may_change_on_resume()
+                    .otherwise("see below")
+                    .means("integrator and accuracy"),
+                schema::sections("body", &Scene::bodies, body_table,
+                                 [](const TomlTable& table, std::size_t, BodySettings& body, Scene& scene) {
+                                   finish_body(table, body, scene);
+                                 })
+                    .otherwise("at least one, or a collider with a density")
+                    .means("the simulated bodies"),
+                schema::sections("collider", &Scene::colliders, collider_table, finish_collider)
+                    .means("obstacles and rigid bodies"),
+                schema::section("contact", &Scene::contact, contact_table,
+                                [](const TomlTable&, Scene& scene) { scene.contact.given = true; })
+                    .may_change_on_resume()
+                    .otherwise("see below")
+                    .means("contact distance and friction"),
+                schema::sections("pin", &Scene::pins, pin_table, finish_pin)
+                    .may_change_on_resume()
+                    .means("prescribed vertices"),
+                schema::sections("force", &Scene::forces, force_table, finish_force)
+                    .may_change_on_resume()
+                    .means("gravity, point forces, wind; without a gravity force there is no gravity"),
+                schema::sections("probe", &Scene::probes, probe_table, finish_probe)
+                    .may_change_on_resume()
+                    .means("points whose path is written to `probes.csv`")});
+}
+
+}  // namespace
+
+const schema::Table& scene_table() {
+  static const schema::Table table = declared();
+  return table;
+}
+
+}  // namespace muslin

@@ -1,0 +1,377 @@
+// Declares keys by the member of the settings that holds their value:
+//
+//   number("duration", &TimeSettings::duration).unit("s").range({0, 1e9, true}).means("simulated time")
+//
+// A member may be an std::optional: then the key has no value where it is not given.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <typeinfo>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "muslin/core/vectors.hpp"
+#include "muslin/schema/codec.hpp"
+#include "muslin/schema/key.hpp"
+#include "muslin/schema/table.hpp"
+#include "muslin/schema/value.hpp"
+
+namespace muslin::schema {
+
+/// A key in the making.
+class Declaration {
+ public:
+  explicit Declaration(Key key) : key_(std::move(key)) {}
+  operator Key() const { return key_; }  // NOLINT(google-explicit-constructor): stands in lists of keys
+
+  Declaration& unit(std::string unit) { return set(&Key::unit, std::move(unit)); }
+  Declaration& range(Range range) { return set(&Key::range, range); }
+  Declaration& means(std::string meaning) { return set(&Key::meaning, std::move(meaning)); }
+  /// States the default where it is not a constant.
+  Declaration& otherwise(std::string words) { return set(&Key::otherwise, std::move(words)); }
+  Declaration& may_change_on_resume() { return set(&Key::may_change_on_resume, true); }
+  /// The key must be given; `remedy` says what to do, if the type does not say it well enough.
+  Declaration& required(std::string remedy = {}) {
+    key_.missing = std::move(remedy);
+    return set(&Key::required, true);
+  }
+  Declaration& required_without(std::vector<std::string> others) {
+    key_.unless = std::move(others);
+    return set(&Key::required, true);
+  }
+  Declaration& needs(std::string other, std::string remedy) {
+    key_.needs.push_back({std::move(other), std::move(remedy)});
+    return *this;
+  }
+  Declaration& excludes(std::string other, std::string problem, std::string remedy = "keep one of them") {
+    key_.conflicts.push_back({std::move(other), std::move(problem), std::move(remedy)});
+    return *this;
+  }
+  /// The resolved scene has the key only where the predicate holds.
+  template <class S, class Predicate>
+  Declaration& shown_if(Predicate predicate) {
+    key_.shown = [predicate](const void* s) -> bool { return predicate(*static_cast<const S*>(s)); };
+    return *this;
+  }
+  /// The resolved scene has this value in place of the member's.
+  template <class S, class Value>
+  Declaration& shown_as(Value value) {
+    key_.write = [value](const Key& key, const void* s, TomlValue& out) {
+      append(out, key.name, value(*static_cast<const S*>(s)));
+    };
+    return *this;
+  }
+
+ private:
+  template <class T, class U>
+  Declaration& set(T Key::* member, U value) {
+    key_.*member = std::move(value);
+    return *this;
+  }
+
+  Key key_;
+};
+
+/// A key with functions of its own: read(key, table, settings) and write(key, settings, table).
+template <class S, class Read, class Write>
+Declaration custom(std::string name, std::vector<Type> types, Read read, Write write) {
+  Key key;
+  key.name = std::move(name);
+  key.types = std::move(types);
+  key.read = [read](const Key& k, const TomlTable& table, void* s) { read(k, table, *static_cast<S*>(s)); };
+  key.write = [write](const Key& k, const void* s, TomlValue& out) {
+    write(k, *static_cast<const S*>(s), out);
+  };
+  return Declaration(std::move(key));
+}
+
+template <class T>
+struct Optional : std::false_type {};
+template <class T>
+struct Optional<std::optional<T>> : std::true_type {};
+
+/// A key whose value the codec reads, writes and checks. `S` owns the member.
+template <class S, class T, class Codec>
+Declaration stored(std::string name, T S::* member, Codec codec) {
+  constexpr bool optional = Optional<T>::value;
+  Key key;
+  key.name = std::move(name);
+  key.types = codec.types();
+  key.range = codec.range();
+  key.read = [=](const Key& k, const TomlTable& table, void* s) {
+    static_cast<S*>(s)->*member = codec.template read<T>(k, table);
+  };
+  key.write = [=](const Key& k, const void* s, TomlValue& out) {
+    const T& value = static_cast<const S*>(s)->*member;
+    if constexpr (optional) {
+      if (value) append(out, k.name, codec.write(k, *value));
+    } else {
+      append(out, k.name, codec.write(k, value));
+    }
+  };
+  key.check = [=](const Key& k, const void* s, const Subject& subject) {
+    const T& value = static_cast<const S*>(s)->*member;
+    if constexpr (optional) {
+      if (value) codec.check(k, *value, subject);
+    } else {
+      codec.check(k, value, subject);
+    }
+  };
+  if constexpr (optional)
+    key.given = [=](const void* s) { return (static_cast<const S*>(s)->*member).has_value(); };
+  return Declaration(std::move(key));
+}
+
+template <class S, class T>
+Declaration number(std::string name, T S::* member) {
+  return stored(std::move(name), member, NumberCodec{});
+}
+/// Without an upper bound of the range, the largest of 64 bits.
+template <class S, class T>
+Declaration whole_number(std::string name, T S::* member) {
+  return stored(std::move(name), member, WholeNumberCodec{});
+}
+template <class S, class T>
+Declaration truth(std::string name, T S::* member) {
+  return stored(std::move(name), member, TruthCodec{});
+}
+template <class S, class T>
+Declaration text(std::string name, T S::* member) {
+  return stored(std::move(name), member, TextCodec{});
+}
+/// `choices` are in the order of the enumeration.
+template <class S, class T>
+Declaration word(std::string name, T S::* member, std::vector<std::string> choices) {
+  Key key = stored(std::move(name), member, WordCodec{});
+  key.choices = std::move(choices);
+  return Declaration(std::move(key));
+}
+/// Three numbers, by default within ±largest_component.
+template <class S, class T>
+Declaration vector(std::string name, T S::* member) {
+  return stored(std::move(name), member, VectorCodec{});
+}
+/// A vector that is not 0, stored with length 1.
+template <class S, class T>
+Declaration direction(std::string name, T S::* member, std::string example) {
+  return stored(std::move(name), member, DirectionCodec{std::move(example)});
+}
+template <class S, class T>
+Declaration colour(std::string name, T S::* member) {
+  return stored(std::move(name), member, ColourCodec{}).unit("sRGB 0 to 1");
+}
+
+/// A path; empty: none. `place` gets where it is written.
+template <class S>
+Declaration path(std::string name, std::string S::* member, Place S::* place) {
+  Key key = custom<S>(
+      std::move(name), {Type::path},
+      [=](const Key& k, const TomlTable& table, S& s) {
+        s.*member = table.string(k.name);
+        require_path(s.*member, k, table);
+        s.*place = table.place(k.name);
+      },
+      [=](const Key& k, const S& s, TomlValue& out) {
+        if (!(s.*member).empty()) append(out, k.name, words(s.*member));
+      });
+  key.given = [=](const void* s) { return !(static_cast<const S*>(s)->*member).empty(); };
+  return Declaration(std::move(key));
+}
+
+/// A table in a table. In messages about settings of a program its keys stand without its name.
+template <class S, class T>
+Declaration nested(std::string name, T S::* member, const Table& (*keys)()) {
+  constexpr bool optional = Optional<T>::value;
+  Key key = custom<S>(
+      std::move(name), {Type::table},
+      [=](const Key& k, const TomlTable& owner, S& s) {
+        const TomlTable table =
+            keys().open(*owner.find(k.name), fmt::format("`{}` of {}", k.name, owner.title()));
+        if constexpr (optional) {
+          keys().read(table, (s.*member).emplace());
+        } else {
+          keys().read(table, s.*member);
+        }
+      },
+      [=](const Key& k, const S& s, TomlValue& out) {
+        if constexpr (optional) {
+          if (s.*member) append(out, k.name, keys().write(*(s.*member)));
+        } else {
+          append(out, k.name, keys().write(s.*member));
+        }
+      });
+  key.table = keys;
+  key.check = [=](const Key&, const void* s, const Subject& subject) {
+    const T& value = static_cast<const S*>(s)->*member;
+    if constexpr (optional) {
+      if (value) keys().check(*value, subject);
+    } else {
+      keys().check(value, subject);
+    }
+  };
+  return Declaration(std::move(key));
+}
+
+/// A table at the top of the file, such as [time]. finish(table, settings) is called once it is read.
+template <class S, class T, class Finish>
+Declaration section(std::string name, T S::* member, const Table& (*keys)(), Finish finish) {
+  Key key = nested(std::move(name), member, keys);
+  key.read = [=](const Key& k, const TomlTable& top, void* s) {
+    S& settings = *static_cast<S*>(s);
+    const TomlTable table = keys().open(*top.find(k.name), fmt::format("`{}` of {}", k.name, top.title()));
+    keys().read(table, settings.*member);
+    finish(table, settings);
+  };
+  key.check = [=](const Key& k, const void* s, const Subject&) {
+    const T& value = static_cast<const S*>(s)->*member;
+    Place place;
+    if constexpr (requires { value.place; }) place = value.place;
+    keys().check(value, Subject(fmt::format("[{}]", k.name), place));
+  };
+  return Declaration(std::move(key));
+}
+inline constexpr auto nothing = [](const TomlTable&, const auto&) {};
+
+/// A list of tables at the top of the file, such as [[pin]]. finish(table, index, item, settings) completes
+/// each item before it is appended: with what depends on the rest of the scene.
+template <class S, class T, class Finish>
+Declaration sections(std::string name, std::vector<T> S::* member, const Table& (*keys)(), Finish finish) {
+  Key key = custom<S>(
+      std::move(name), {Type::tables},
+      [=](const Key& k, const TomlTable& top, S& s) {
+        for (const TomlValue& value : section_values(k.name, top)) {
+          const std::size_t index = (s.*member).size();
+          const TomlTable table = keys().open(value, section_title(k.name, value, index));
+          T item;
+          keys().read(table, item);
+          finish(table, index, item, s);
+          (s.*member).push_back(std::move(item));
+        }
+      },
+      [=](const Key& k, const S& s, TomlValue& out) {
+        TomlValue items = list({});
+        for (const T& item : s.*member) items.items.push_back(keys().write(item));
+        append(out, k.name, std::move(items));
+      });
+  key.table = keys;
+  key.check = [=](const Key& k, const void* s, const Subject&) {
+    for (const T& item : static_cast<const S*>(s)->*member)
+      keys().check(item, Subject(fmt::format("[[{}]] `{}`", k.name, item.name), item.place));
+  };
+  return Declaration(std::move(key));
+}
+
+/// A list of tables that each have a `time` after that of the one before.
+template <class S, class T>
+Declaration keyframes(std::string name, std::vector<T> S::* member, const Table& (*keys)()) {
+  Key key = custom<S>(
+      std::move(name), {Type::tables},
+      [=](const Key& k, const TomlTable& owner, S& s) {
+        (s.*member).clear();
+        for (const TomlValue& value : keyframe_values(k.name, owner)) {
+          const TomlTable table = keys().open(value, "a keyframe of " + owner.title());
+          T item;
+          keys().read(table, item);
+          if (!(s.*member).empty()) require_later(table, (s.*member).back().time, item.time);
+          (s.*member).push_back(item);
+        }
+      },
+      [=](const Key& k, const S& s, TomlValue& out) {
+        TomlValue items = list({});
+        for (const T& item : s.*member) items.items.push_back(keys().write(item));
+        append(out, k.name, std::move(items));
+      });
+  key.table = keys;
+  key.given = [=](const void* s) { return !(static_cast<const S*>(s)->*member).empty(); };
+  key.check = [=](const Key& k, const void* s, const Subject& subject) {
+    const std::vector<T>& items = static_cast<const S*>(s)->*member;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (!std::isfinite(items[i].time) || (i > 0 && !(items[i].time > items[i - 1].time)))
+        throw subject.error(k.name, fmt::format("keyframe {} is at {} s", i, items[i].time),
+                            "give times that ascend");
+      keys().check(items[i], subject);
+    }
+  };
+  return Declaration(std::move(key));
+}
+
+/// The same key for settings that hold those it was declared for.
+template <class Outer, class Inner>
+Key within(Inner Outer::* member, Key key) {
+  const auto inner = [member](const void* s) -> const void* {
+    return &(static_cast<const Outer*>(s)->*member);
+  };
+  key.read = [member, read = key.read](const Key& k, const TomlTable& table, void* s) {
+    read(k, table, &(static_cast<Outer*>(s)->*member));
+  };
+  key.write = [inner, write = key.write](const Key& k, const void* s, TomlValue& out) {
+    write(k, inner(s), out);
+  };
+  if (key.check) {
+    key.check = [inner, check = key.check](const Key& k, const void* s, const Subject& subject) {
+      check(k, inner(s), subject);
+    };
+  }
+  if (key.given) key.given = [inner, given = key.given](const void* s) { return given(inner(s)); };
+  if (key.shown) key.shown = [inner, shown = key.shown](const void* s) { return shown(inner(s)); };
+  return key;
+}
+
+/// A table of keys of settings S.
+template <class S>
+Table table_of(std::string name, std::vector<Key> keys) {
+  Table table;
+  table.name = std::move(name);
+  table.keys = std::move(keys);
+  table.type = &typeid(S);
+  table.blank = std::make_shared<const S>();
+  if constexpr (requires(S& s) { s.place; })
+    table.set_place = [](const Place& place, void* s) { static_cast<S*>(s)->place = place; };
+  return table;
+}
+
+/// Adds the keys, the completion and the rules of a table of settings that the member holds.
+template <class Outer, class Inner>
+void include(Table& table, Inner Outer::* member, const Table& inner) {
+  for (const Key& key : inner.keys) table.keys.push_back(within(member, key));
+  if (inner.complete) {
+    table.complete = [member, complete = inner.complete](const TomlTable& given, void* s) {
+      complete(given, &(static_cast<Outer*>(s)->*member));
+    };
+  }
+  for (const auto& rule : inner.rules) {
+    table.rules.push_back([member, rule](const void* s, const Subject& subject) {
+      rule(&(static_cast<const Outer*>(s)->*member), subject);
+    });
+  }
+}
+
+/// Lets the key `name`, whose value is the member, select further keys.
+template <class S, class T>
+void choose(Table& table, std::string_view name, T S::* member, std::vector<Variant> variants) {
+  const auto at =
+      std::find_if(table.keys.begin(), table.keys.end(), [&](const Key& key) { return key.name == name; });
+  table.chooser = static_cast<std::size_t>(at - table.keys.begin());
+  table.variants = std::move(variants);
+  table.chosen = [member](const void* s) {
+    return static_cast<std::size_t>(static_cast<const S*>(s)->*member);
+  };
+}
+
+/// Adds a rule of several keys: rule(settings, subject) throws subject.error(…).
+template <class S, class Rule>
+void add_rule(Table& table, Rule rule) {
+  table.rules.push_back(
+      [rule](const void* s, const Subject& subject) { rule(*static_cast<const S*>(s), subject); });
+}
+
+}  // namespace muslin::schema

@@ -1,0 +1,73 @@
+// Key declares a key of a scene or material file: name, type, unit, range, default, meaning, and whether it
+// may change when a run is resumed. Reading, checking, writing, the JSON Schema, the guide and the Python
+// types come from this one declaration (schema/declare.hpp makes keys, schema/table.hpp uses them).
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "muslin/core/toml_table.hpp"
+#include "muslin/core/toml_value.hpp"
+#include "muslin/schema/subject.hpp"
+
+namespace muslin::schema {
+
+struct Table;
+
+enum class Type {
+  number,
+  whole_number,
+  truth,  ///< true or false
+  text,
+  path,    ///< a text that names a file
+  word,    ///< one of Key::choices
+  vector,  ///< three numbers
+  points,  ///< a list of vectors
+  table,
+  tables,  ///< a list of tables
+};
+
+struct Key {
+  std::string name;
+  std::vector<Type> types;           ///< the value is one of these
+  std::string unit;                  ///< empty: none
+  Range range;                       ///< of numbers and of the components of vectors
+  std::vector<std::string> choices;  ///< words
+  std::size_t count = 0;             ///< of `points`; 0: any
+  std::string meaning;
+  std::string otherwise;  ///< the default in words, where it is not a constant
+  bool required = false;
+  std::vector<std::string> unless;  ///< not required beside any of these keys
+  std::string missing;              ///< remedy where a required key is missing; empty: by the type
+  bool may_change_on_resume = false;
+  const Table& (*table)() = nullptr;  ///< the keys of a table, or of each table of a list
+
+  struct Need {
+    std::string other, remedy;
+  };
+  std::vector<Need> needs;  ///< keys without which this one may not be given
+  struct Conflict {
+    std::string other, problem, remedy;
+  };
+  std::vector<Conflict> conflicts;  ///< keys beside which this one may not be given
+
+  // Each gets the key itself and the settings, of the type for which the key was declared.
+  /// Stores the value of the table's key, which is there. Errors: input, at its place.
+  std::function<void(const Key&, const TomlTable&, void*)> read;
+  /// Appends the value to a table; nothing where there is none.
+  std::function<void(const Key&, const void*, TomlValue&)> write;
+  /// Throws Error(input) if the settings hold a value that could not be read.
+  std::function<void(const Key&, const void*, const Subject&)> check;
+  std::function<bool(const void*)> given;  ///< whether there is a value; null: always
+  std::function<bool(const void*)> shown;  ///< whether the resolved scene has the key; null: always
+};
+
+/// Returns the key's value in words, for messages: "a number above 0 [m]".
+std::string described(const Key& key);
+
+/// The file a text names. Errors: input.
+void require_path(const std::string& path, const Key& key, const TomlTable& table);
+
+}  // namespace muslin::schema
