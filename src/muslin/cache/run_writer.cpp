@@ -24,6 +24,7 @@
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/describe.hpp"
 #include "muslin/scene/names.hpp"
+#include "muslin/scene/scene_table.hpp"
 #include "muslin/simulation/checkpoint.hpp"
 #include "muslin/version.hpp"
 
@@ -80,13 +81,6 @@ Json read_summary(const fs::path& directory) {
   return run;
 }
 
-/// True for settings of bodies and colliders that may differ on resume, such as body.0.colour.2.
-bool may_change(const std::string& setting) {
-  for (const char* key : {"friction", "stretch_limit", "colour", "keyframes"})
-    if ((setting + ".").find(fmt::format(".{}.", key)) != std::string::npos) return true;
-  return false;
-}
-
 bool has_stretch_limit(const Model& model) {
   const std::vector<BodySettings>& bodies = model.scene.bodies;
   return std::any_of(bodies.begin(), bodies.end(),
@@ -103,21 +97,19 @@ struct BodyCaches {
 
 std::vector<std::string> changes_since(const fs::path& directory, const Model& model) {
   const Json run = read_summary(directory);
-  std::vector<std::string> changes;
-  std::vector<std::string> bodies;
+  if (run["frame_rate"] != model.scene.time.frame_rate) {
+    throw Error(ErrorKind::input, {directory.string()}, "the frame rate is not that of the run to resume",
+                "undo the change, or restart the run without --resume");
+  }
+  std::vector<std::string> changes, refused;
   for (const auto& step : Json::diff(run["scene"], parsed_scene(model))) {
     const std::string setting = dotted(step.value("path", ""));
     changes.push_back(setting);
-    const bool of_body = setting.starts_with("body") || setting.starts_with("collider");
-    if (of_body && !may_change(setting)) bodies.push_back(setting);
+    if (!schema::may_change_on_resume(scene_table(), setting)) refused.push_back(setting);
   }
-  if (!bodies.empty()) {
+  if (!refused.empty()) {
     throw Error(ErrorKind::input, {directory.string()},
-                "the bodies are not those of the run to resume; changed: " + joined(bodies),
-                "undo the change, or restart the run without --resume");
-  }
-  if (run["frame_rate"] != model.scene.time.frame_rate) {
-    throw Error(ErrorKind::input, {directory.string()}, "the frame rate is not that of the run to resume",
+                "the bodies are not those of the run to resume; changed: " + joined(refused),
                 "undo the change, or restart the run without --resume");
   }
   return changes;
