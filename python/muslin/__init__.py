@@ -11,6 +11,7 @@ Lengths are metres, y is up, arrays are numpy's, shape (vertices, 3). Arrays tha
 its memory: read-only, and valid for as long as they are kept. Errors are muslin.Error and its subclasses.
 """
 
+from muslin import scene_types
 from muslin._muslin import (
     Body,
     Contour,
@@ -115,6 +116,7 @@ __all__ = [
     "read_scene",
     "run",
     "sample_field",
+    "scene_types",
     "set_thread_count",
     "thicken",
     "thread_count",

@@ -24,7 +24,7 @@ def make_scene(
 
     A ``mesh`` or ``rest_mesh`` may be a ``muslin.Mesh`` in place of a path; paths are relative to ``folder``. numpy
     arrays and numbers count as lists and numbers; ``None`` leaves a key out. The places in messages are those of
-    ``scene.text``.
+    ``scene.text``. ``muslin.scene_types`` has the types of the tables.
     """
     meshes: dict[str, Mesh] = {}
     content = _with_paths({**_tables(tables), **more}, meshes)

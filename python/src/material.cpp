@@ -18,39 +18,10 @@ namespace {
 
 using Numbers = nb::typed<nb::dict, nb::str, nb::float_>;
 
-Numbers lattice_numbers(const Material& material) {
-  Numbers numbers;
-  if (!material.has_lattice) return numbers;
-  numbers["density"] = material.density;
-  numbers["edge_modulus"] = material.edge_modulus;
-  numbers["face_diagonal_modulus"] = material.face_diagonal_modulus;
-  numbers["body_diagonal_modulus"] = material.body_diagonal_modulus;
-  numbers["volume_modulus"] = material.volume_modulus;
-  numbers["mass_damping"] = material.mass_damping;
-  numbers["stiffness_damping"] = material.stiffness_damping;
-  if (material.young_modulus > 0) {
-    numbers["young_modulus"] = material.young_modulus;
-    numbers["poisson"] = material.poisson;
-  }
-  return numbers;
-}
-
-Numbers shell_numbers(const Material& material) {
-  Numbers numbers;
-  if (!material.shell) return numbers;
-  const ShellMaterial& shell = *material.shell;
-  numbers["areal_density"] = shell.areal_density;
-  numbers["membrane_warp"] = shell.membrane_warp;
-  numbers["membrane_weft"] = shell.membrane_weft;
-  numbers["membrane_shear"] = shell.membrane_shear;
-  numbers["poisson"] = shell.poisson;
-  numbers["bending_warp"] = shell.bending_warp;
-  numbers["bending_weft"] = shell.bending_weft;
-  numbers["bending_bias"] = shell.bending_bias;
-  numbers["mass_damping"] = shell.mass_damping;
-  numbers["stiffness_damping"] = shell.stiffness_damping;
-  numbers["bending_damping"] = shell.bending_damping;
-  return numbers;
+Numbers as_dict(const std::vector<MaterialNumber>& numbers) {
+  Numbers dict;
+  for (const MaterialNumber& number : numbers) dict[number.key.c_str()] = number.value;
+  return dict;
 }
 
 }  // namespace
@@ -60,10 +31,12 @@ void bind_material(nb::module_& m) {
       .def_ro("name", &Material::name)
       .def_ro("description", &Material::description)
       .def_ro("source", &Material::source, "Where the numbers are from.")
-      .def_prop_ro("lattice", &lattice_numbers,
-                   "Numbers of a lattice by the keys of the scene file, in SI units; empty if it has none.")
-      .def_prop_ro("shell", &shell_numbers,
-                   "Numbers of a shell by the keys of the scene file, in SI units; empty if it has none.")
+      .def_prop_ro(
+          "lattice", [](const Material& material) { return as_dict(lattice_numbers(material)); },
+          "Numbers of a lattice by the keys of the scene file, in SI units; empty if it has none.")
+      .def_prop_ro(
+          "shell", [](const Material& material) { return as_dict(shell_numbers(material)); },
+          "Numbers of a shell by the keys of the scene file, in SI units; empty if it has none.")
       .def_prop_ro(
           "reference",
           [](const Material& material) {

@@ -76,6 +76,10 @@ except muslin.SolverError as error:
     print(error.remedy, error.line)
 with muslin.RunWriter("out", simulation) as writer:
     writer.write_frame()
+cloth: muslin.scene_types.ShellBody = {"mesh": mesh, "model": "shell", "material": "cotton", "warp": np.zeros(3)}
+wind: muslin.scene_types.WindForce = {"type": "wind", "velocity": [1, 0, 0], "drag": None}
+tables: muslin.scene_types.Scene = {"time": {"duration": 2}, "body": [cloth], "force": [wind]}
+muslin.make_scene(tables)
 """
 
 BAD = {
@@ -85,6 +89,9 @@ BAD = {
     "muslin.read_scene(7)": "arg-type",
     "simulation.model.bodies[0].lattice.voxel_count": "union-attr",
     "muslin.Mesh([[0, 0, 0]])": "call-arg",
+    "a: muslin.scene_types.Time = {'duraton': 2}": "typeddict-unknown-key",
+    "b: muslin.scene_types.Solver = {'effort': 'exat'}": "typeddict-item",
+    "c: muslin.scene_types.WindForce = {'velocity': [1, 0, 0]}": "typeddict-item",
 }
 
 
