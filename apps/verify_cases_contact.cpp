@@ -28,8 +28,8 @@ std::filesystem::path scene_file(const std::string& name) {
 std::shared_ptr<const Model> shaken(const std::string& name, unsigned seed) {
   auto model = std::make_shared<Model>(build_model(read_scene(scene_file(name))));
   std::vector<bool> free(model->vertex_count(), false);
-  for (const Body& body : model->bodies) {
-    if (!body.is_shell() && !body.has_lattice()) continue;
+  for (const Component& body : model->bodies) {
+    if (!body.is_soft()) continue;
     std::fill_n(free.begin() + body.first_vertex, body.vertex_count, true);
   }
   for (const Pin& pin : model->pins)

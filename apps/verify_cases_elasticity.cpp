@@ -125,7 +125,7 @@ keyframes = [{{ time = 0 }}, {{ time = 1, translate = [0.16, 0, 0] }}]
     advance(simulation, 20);
     const std::vector<Vec3>& x = simulation.state().positions;
     double sum = 0;
-    for (const auto& tet : build_tetrahedra(simulation.model().bodies.front().lattice)) {
+    for (const auto& tet : build_tetrahedra(as_lattice(simulation.model().bodies.front())->lattice)) {
       const auto corner = [&](int i) {
         return x[static_cast<std::size_t>(tet[static_cast<std::size_t>(i)])];
       };

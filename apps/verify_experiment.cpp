@@ -128,7 +128,7 @@ void advance(Simulation& simulation, int frames) {
 }
 
 Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity) {
-  const Body& body = simulation.model().body(name);
+  const Component& body = simulation.model().body(name);
   const auto& of = velocity ? simulation.state().velocities : simulation.state().positions;
   Vec3 sum = Vec3::Zero();
   double mass = 0;
@@ -141,7 +141,7 @@ Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity
 }
 
 std::size_t vertex(const Simulation& simulation, int i, int j, int k) {
-  const int index = simulation.model().bodies.front().lattice.find_vertex({i, j, k});
+  const int index = as_lattice(simulation.model().bodies.front())->lattice.find_vertex({i, j, k});
   if (index < 0)
     throw Error(ErrorKind::usage, fmt::format("no vertex ({}, {}, {})", i, j, k), "mend the case");
   return static_cast<std::size_t>(index);

@@ -42,6 +42,10 @@ Vec3 Referee::Anchor::at(ConstVectors q) const {
 
 Referee::Referee(std::shared_ptr<const Model> model) : model_(std::move(model)) {
   const Scene& scene = model_->scene;
+  const auto place_of = [&](const std::string& name) {
+    return static_cast<std::size_t>(model_->bodies.index_of(model_->body(name)));
+  };
+  touches_itself_.assign(model_->bodies.size(), false);
   const auto add_mesh = [&](std::size_t b) {
     const Mesh& mesh = model_->bodies[b].mesh;
     for (const Vec3i& t : triangulate(mesh).triangles) {
@@ -51,18 +55,21 @@ Referee::Referee(std::shared_ptr<const Model> model) : model_(std::move(model)) 
     meshes_.push_back(b);
     body_of_point_.resize(body_of_point_.size() + mesh.positions.size(), b);
   };
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    if (scene.bodies[b].contact) add_mesh(b);
-  for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
-    const ColliderSettings& settings = scene.colliders[c];
+  for (const BodySettings& settings : scene.bodies) {
     if (!settings.contact) continue;
-    const std::size_t b = scene.bodies.size() + c;
-    const Body& body = model_->bodies[b];
-    Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
-    for (const Prescribed& p : model_->prescribed)
-      if (p.first == body.first_vertex) start = p.motion.at(0);
+    const std::size_t b = place_of(settings.name);
+    touches_itself_[b] = settings.self_contact;
+    add_mesh(b);
+  }
+  for (const ColliderSettings& settings : scene.colliders) {
+    if (!settings.contact) continue;
+    const std::size_t b = place_of(settings.name);
+    const Component& body = model_->bodies[b];
+    const Eigen::Isometry3d start =
+        body.is_prescribed() ? body.motion()->motion.at(0) : Eigen::Isometry3d::Identity();
     const auto anchor = [&](const Vec3& given) {
-      return Anchor{static_cast<std::size_t>(body.first_vertex), body.frame.weights(start * given)};
+      const AffineFrame& frame = dynamic_cast<const AffineCollider&>(body).frame;
+      return Anchor{static_cast<std::size_t>(body.first_vertex), frame.weights(start * given)};
     };
     using Shape = ColliderSettings::Shape;
     if (settings.shape == Shape::plane) {
@@ -84,15 +91,14 @@ Referee::Referee(std::shared_ptr<const Model> model) : model_(std::move(model)) 
 }
 
 bool Referee::may_touch(std::size_t body_a, std::size_t body_b) const {
-  const std::size_t count = model_->scene.bodies.size();
-  if (body_a == body_b) return body_a < count && model_->scene.bodies[body_a].self_contact;
-  return !(model_->bodies[body_a].prescribed && model_->bodies[body_b].prescribed);
+  if (body_a == body_b) return touches_itself_[body_a];
+  return !(model_->bodies[body_a].is_prescribed() && model_->bodies[body_b].is_prescribed());
 }
 
 std::size_t Referee::crossings(ConstVectors q) const {
   std::vector<Vec3> x;
   for (const std::size_t b : meshes_) {
-    const Body& body = model_->bodies[b];
+    const Component& body = model_->bodies[b];
     std::vector<Vec3> part(body.mesh.positions.size());
     body.skin.apply(model_->of(body, q), part);
     x.insert(x.end(), part.begin(), part.end());

@@ -41,6 +41,7 @@ class Referee {
 
   std::shared_ptr<const Model> model_;
   // Bodies with a mesh in contact; then an axis for each round one.
+  std::vector<bool> touches_itself_;  // by body
   std::vector<std::size_t> meshes_;
   std::vector<Vec3i> triangles_;
   std::vector<std::size_t> body_of_triangle_;

@@ -24,8 +24,8 @@ namespace muslin::python {
 namespace {
 
 /// Python objects for the parts of `self`, each keeping it alive.
-template <class Part>
-nb::typed<nb::list, Part> parts(const std::vector<Part>& parts, nb::handle self) {
+template <class Part, class List>
+nb::typed<nb::list, Part> parts(const List& parts, nb::handle self) {
   nb::typed<nb::list, Part> list;
   for (const Part& part : parts) list.append(nb::cast(&part, nb::rv_policy::reference_internal, self));
   return list;
@@ -33,50 +33,54 @@ nb::typed<nb::list, Part> parts(const std::vector<Part>& parts, nb::handle self)
 
 void bind_body(nb::module_& m) {
   constexpr auto inside = nb::rv_policy::reference_internal;
-  nb::class_<Body>(m, "Body", "A body of a model. Its parts are views of the model.")
-      .def_ro("name", &Body::name)
+  nb::class_<Component>(m, "Body", "A body of a model. Its parts are views of the model.")
+      .def_ro("name", &Component::name)
       .def_prop_ro(
-          "model", [](const Body& b) { return name_of(body_model_names(), b.model); },
+          "model", [](const Component& b) { return b.kind(); },
           "\"lattice\" or \"shell\"; of colliders \"rigid\" or \"sequence\".")
       .def_prop_ro(
-          "mesh", [](const Body& b) -> const Mesh& { return b.mesh; }, inside,
+          "mesh", [](const Component& b) -> const Mesh& { return b.mesh; }, inside,
           "The user's mesh, placed in the world: the skin at rest.")
       .def_prop_ro(
-          "solid", [](const Body& b) { return b.has_lattice() ? &b.solid : nullptr; }, inside,
+          "solid", [](const Component& b) { return as_lattice(b) ? &as_lattice(b)->solid : nullptr; }, inside,
           nb::sig("def solid(self) -> Mesh | None"), "The closed mesh that was filled with voxels.")
       .def_prop_ro(
-          "report", [](const Body& b) -> const MeshReport& { return b.report; }, inside, "Of the mesh.")
+          "report", [](const Component& b) -> const MeshReport& { return b.report; }, inside, "Of the mesh.")
       .def_prop_ro(
-          "is_collider", [](const Body& b) { return !b.is_soft(); }, "Of [[collider]], not of [[body]].")
-      .def_ro("prescribed", &Body::prescribed, "Moves as it is told, not as it is pushed; it has no mass.")
-      .def_ro("sheet", &Body::sheet, "Thin: a shell, or a mesh that was given a thickness.")
-      .def_ro("thickness", &Body::thickness, "Of a sheet of voxels [m].")
+          "is_collider", [](const Component& b) { return b.is_collider(); },
+          "Of [[collider]], not of [[body]].")
       .def_prop_ro(
-          "lattice", [](const Body& b) { return b.has_lattice() ? &b.lattice : nullptr; }, inside,
-          nb::sig("def lattice(self) -> Lattice | None"))
+          "prescribed", [](const Component& b) { return b.is_prescribed(); },
+          "Moves as it is told, not as it is pushed; it has no mass.")
+      .def_ro("sheet", &Component::sheet, "Thin: a shell, or a mesh that was given a thickness.")
       .def_prop_ro(
-          "springs", [](const Body& b) { return b.has_lattice() ? &b.springs : nullptr; }, inside,
-          nb::sig("def springs(self) -> Springs | None"))
+          "thickness", [](const Component& b) { return as_lattice(b) ? as_lattice(b)->thickness : 0; },
+          "Of a sheet of voxels [m].")
       .def_prop_ro(
-          "contour", [](const Body& b) { return b.has_lattice() ? &b.contour : nullptr; }, inside,
-          nb::sig("def contour(self) -> Contour | None"))
+          "lattice", [](const Component& b) { return as_lattice(b) ? &as_lattice(b)->lattice : nullptr; },
+          inside, nb::sig("def lattice(self) -> Lattice | None"))
       .def_prop_ro(
-          "shell", [](const Body& b) { return b.is_shell() ? &b.shell : nullptr; }, inside,
+          "springs", [](const Component& b) { return as_lattice(b) ? &as_lattice(b)->springs : nullptr; },
+          inside, nb::sig("def springs(self) -> Springs | None"))
+      .def_prop_ro(
+          "contour", [](const Component& b) { return as_lattice(b) ? &as_lattice(b)->contour : nullptr; },
+          inside, nb::sig("def contour(self) -> Contour | None"))
+      .def_prop_ro(
+          "shell", [](const Component& b) { return as_shell(b) ? &as_shell(b)->shell : nullptr; }, inside,
           nb::sig("def shell(self) -> Shell | None"))
       .def_prop_ro(
-          "skin", [](const Body& b) -> const Embedding& { return b.skin; }, inside,
+          "skin", [](const Component& b) -> const Embedding& { return b.skin; }, inside,
           "From the body's vertices to those of its mesh.")
-      .def_ro("first_vertex", &Body::first_vertex, "In arrays of all bodies.")
-      .def_ro("vertex_count", &Body::vertex_count)
+      .def_ro("first_vertex", &Component::first_vertex, "In arrays of all bodies.")
+      .def_ro("vertex_count", &Component::vertex_count)
       .def_prop_ro(
           "vertices",
-          [](const Body& b) { return nb::slice(b.first_vertex, b.first_vertex + b.vertex_count, 1); },
+          [](const Component& b) { return nb::slice(b.first_vertex, b.first_vertex + b.vertex_count, 1); },
           "The slice of its vertices in arrays of all bodies.")
       .def_prop_ro(
-          "mass", [](const Body& b) { return b.statistics.mass; }, "[kg]")
-      .def("__repr__", [](const Body& b) {
-        return fmt::format("<muslin.Body {}: {}, {} vertices>", b.name, name_of(body_model_names(), b.model),
-                           b.vertex_count);
+          "mass", [](const Component& b) { return b.statistics.mass; }, "[kg]")
+      .def("__repr__", [](const Component& b) {
+        return fmt::format("<muslin.Body {}: {}, {} vertices>", b.name, b.kind(), b.vertex_count);
       });
 }
 
@@ -99,12 +103,14 @@ void bind_model(nb::module_& m) {
       .def_prop_ro(
           "scene", [](const Model& model) -> const Scene& { return model.scene; },
           nb::rv_policy::reference_internal)
-      .def_prop_ro("bodies", [](Self self) { return parts(self.p->bodies, self.h); })
+      .def_prop_ro("bodies", [](Self self) { return parts<Component>(self.p->bodies, self.h); })
       .def(
           "body",
-          [](const Model& model, const std::string& name) -> const Body& { return find_body(model, name); },
+          [](const Model& model, const std::string& name) -> const Component& {
+            return find_body(model, name);
+          },
           "name"_a, nb::rv_policy::reference_internal, "The body of this name.")
-      .def_prop_ro("pins", [](Self self) { return parts(self.p->pins, self.h); })
+      .def_prop_ro("pins", [](Self self) { return parts<Pin>(self.p->pins, self.h); })
       .def_prop_ro(
           "rest_positions", [](Self self) { return view(self.p->rest_positions, self.h); },
           "(V, 3) of all bodies, one after the other [m].")

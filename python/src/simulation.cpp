@@ -41,12 +41,13 @@ PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse)},
 
 Array<double, -1, 3> carried(const Self& self, const std::optional<std::string>& name,
                              const std::string& surface, const std::vector<Vec3>& vectors) {
-  const Body& body = find_body(*self.model(), name);
+  const Component& body = find_body(*self.model(), name);
   const bool contour = choice(surface, {"skin", "contour"}, "surface") == 1;
-  if (contour && !body.has_lattice())
+  const LatticeBody* lattice = as_lattice(body);
+  if (contour && !lattice)
     throw Error(ErrorKind::usage, "the body \"" + body.name + "\" is no lattice and has no contour",
                 "take its skin");
-  const Embedding& embedding = contour ? body.contour.embedding : body.skin;
+  const Embedding& embedding = contour ? lattice->contour.embedding : body.skin;
   std::vector<Vec3> points(embedding.size());
   embedding.apply(self.model()->of(body, vectors), points);
   return taken(std::move(points));

@@ -80,7 +80,7 @@ void SimulationObject::add_force(nb::object function, const std::string& name,
   Work work(*this);
   std::size_t first = 0, count = model_->vertex_count();
   if (body) {
-    const Body& acted_on = find_body(*model_, body);
+    const Component& acted_on = find_body(*model_, body);
     first = static_cast<std::size_t>(acted_on.first_vertex);
     count = static_cast<std::size_t>(acted_on.vertex_count);
   }
@@ -126,11 +126,11 @@ nb::object SimulationObject::velocities() { return snapshot(velocities_, simulat
 
 void SimulationObject::forget_forces() { forces_.clear(); }
 
-const Body& find_body(const Model& model, const std::optional<std::string>& name) {
+const Component& find_body(const Model& model, const std::optional<std::string>& name) {
   std::vector<std::string> names;
-  const Body* only = nullptr;
+  const Component* only = nullptr;
   int soft = 0;
-  for (const Body& body : model.bodies) {
+  for (const Component& body : model.bodies) {
     names.push_back(body.name);
     if (!body.is_soft()) continue;
     ++soft;

@@ -72,6 +72,6 @@ class SimulationObject {
 };
 
 /// The body of the model of this name, or the only one that is no collider. Errors: usage.
-const Body& find_body(const Model& model, const std::optional<std::string>& name);
+const Component& find_body(const Model& model, const std::optional<std::string>& name);
 
 }  // namespace muslin::python

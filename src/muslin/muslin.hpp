@@ -6,6 +6,7 @@
 #include "muslin/cache/run.hpp"
 #include "muslin/cache/run_reader.hpp"
 #include "muslin/cache/run_writer.hpp"
+#include "muslin/component/component.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/progress.hpp"

@@ -16,9 +16,9 @@
 #include <tiny_gltf.h>
 
 #include "muslin/cache/run_writer.hpp"
-#include "muslin/cache/vtk_file.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/io/mesh_file.hpp"
+#include "muslin/io/vtk_file.hpp"
 
 namespace muslin {
 namespace {
@@ -284,11 +284,12 @@ TEST_F(Export, RefusesWhatItCannotWrite) {
 
 TEST(Vtk, ImagesAndVoxelsReadBack) {
   Scratch scratch;
-  DistanceField field;
-  field.grid.samples = {2, 3, 4};
-  field.grid.width = 0.5;
-  field.values.assign(24, -0.25f);
-  write_vti(scratch / "field.vti", field);
+  VtkImage image;
+  image.samples = {2, 3, 4};
+  image.width = 0.5;
+  image.name = "distance";
+  image.values.assign(24, -0.25f);
+  write_vti(scratch / "field.vti", image);
   EXPECT_THAT(bytes_of(scratch / "field.vti"),
               HasSubstr("WholeExtent=\"0 1 0 2 0 3\" Origin=\"0 0 0\" Spacing=\"0.5 0.5 0.5\""));
   const Lattice lattice = test::box_lattice({3, 2, 1});

@@ -18,6 +18,7 @@
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/run_reader.hpp"
 #include "muslin/cache/run_writer.hpp"
+#include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/output_file.hpp"
 
@@ -197,7 +198,7 @@ TEST(RunDirectory, IsReadBack) {
   EXPECT_EQ(run.frame_rate(), 24);
   EXPECT_EQ(run.find_body(""), 0);
   EXPECT_EQ(run.mesh(0, SurfaceKind::skin).face_vertices, model()->bodies[0].mesh.face_vertices);
-  EXPECT_EQ(run.lattice(0).voxels, model()->bodies[0].lattice.voxel_vertices);
+  EXPECT_EQ(run.lattice(0).voxels, as_lattice(model()->bodies[0])->lattice.voxel_vertices);
   EXPECT_EQ(run.lattice(0).rest_positions, model()->rest_positions);
   Simulation simulation(model());
   for (int frame = 0; frame < 5; ++frame) simulation.advance();

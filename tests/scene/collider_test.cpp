@@ -178,15 +178,15 @@ TEST_F(ColliderModel, FixedShapesAreBodiesWithoutMass) {
                             "[[collider]]\nshape = 'plane'\ncenter = [0, -2, 0]\n");
   ASSERT_EQ(model.bodies.size(), 3u);
   EXPECT_EQ(model.vertex_count(), 20u + 8);
-  const Body& box = model.collider(0);
-  EXPECT_TRUE(box.prescribed && box.is_rigid());
+  const Component& box = model.bodies[1];
+  EXPECT_TRUE(box.is_prescribed() && !box.deforms());
   for (int v = box.first_vertex; v < 28; ++v) EXPECT_EQ(model.masses[static_cast<std::size_t>(v)], 0);
   ASSERT_EQ(model.prescribed.size(), 2u);
   std::vector<Vec3> skin(box.mesh.vertex_count());
   box.skin.apply(model.of(box, model.rest_positions), skin);
   for (std::size_t v = 0; v < skin.size(); ++v) EXPECT_LT((skin[v] - box.mesh.positions[v]).norm(), 1e-12);
   // The plane lies below the middle of what is around it and reaches beyond.
-  const Box patch = model.collider(1).mesh.bounds();
+  const Box patch = model.bodies[2].mesh.bounds();
   EXPECT_NEAR(patch.center().y(), -2, 1e-12);
   EXPECT_GT(patch.sizes().x(), 2);
   EXPECT_LT(patch.sizes().x(), 6);
@@ -223,8 +223,8 @@ TEST_F(ColliderModel, DensityMakesARigidBody) {
       "velocity = [0, 1, 0]\nangular_velocity = [0, 0, 180]\n"
       "[[collider]]\nshape = 'plane'\n[[force]]\ntype = 'gravity'\n");
   const double mass = 500 * 4.0 / 3 * std::numbers::pi * 1e-3;
-  const Body& ball = model.collider(0);
-  EXPECT_FALSE(ball.prescribed);
+  const Component& ball = model.body("ball");
+  EXPECT_FALSE(ball.is_prescribed());
   EXPECT_NEAR(ball.statistics.mass, mass, 1e-12);
   Vec3 momentum = Vec3::Zero(), spin = Vec3::Zero();
   double inertia = 0;
@@ -252,7 +252,7 @@ TEST_F(ColliderModel, DensityMakesARigidBody) {
 TEST_F(ColliderModel, MeshesHaveTheMassTheyEnclose) {
   const Model model =
       build("[[collider]]\nshape = 'mesh'\nmesh = 'box.obj'\nrotate = [0, 30, 0]\nscale = 2\ndensity = 10\n");
-  EXPECT_NEAR(model.collider(0).statistics.mass, 10 * 2 * 4 * 6, 1e-9);
+  EXPECT_NEAR(model.bodies[0].statistics.mass, 10 * 2 * 4 * 6, 1e-9);
   EXPECT_EQ(model.contact, nullptr);  // alone, it touches nothing
   EXPECT_THAT(message("[[collider]]\nshape = 'mesh'\nmesh = 'sheet.obj'\ndensity = 1\n"),
               testing::AllOf(HasSubstr("scene.toml:3:8: "), HasSubstr("does not enclose a solid")));
@@ -268,8 +268,8 @@ TEST_F(ColliderModel, SequencesAreMeshesWhoseVerticesMove) {
       "[[collider]]\nname = 'walker'\nshape = 'mesh'\nmesh = 'box.obj'\nscale = 2\ntranslate = [0, -9, 0]\n";
   const Model model =
       build(cloth + walker + "sequence = 'frames/walk.#.obj'\nframe_rate = 10\nstart = -0.05\n");
-  const Body& body = model.collider(0);
-  EXPECT_EQ(body.model, BodyModel::sequence);
+  const Component& body = model.body("walker");
+  EXPECT_EQ(body.kind(), "sequence");
   EXPECT_EQ(body.vertex_count, 8);
   // Half a sample has gone by at time 0; scaled and moved as the mesh.
   EXPECT_LT((model.rest_positions[20] - Vec3(2 * (0.5 - 0.5), -9 - 2, -3)).norm(), 1e-6);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/scene/describe.hpp"
 
 namespace muslin {
@@ -248,7 +249,7 @@ TEST_F(ModelTest, WarnsOfStepsThatAreTooLongForSymplecticEuler) {
 TEST_F(ModelTest, ASheetWithoutThicknessIsAVoxelThickAndSaysSo) {
   const Model model = build(body("sheet.obj"));
   EXPECT_TRUE(model.bodies[0].sheet);
-  EXPECT_EQ(model.bodies[0].thickness, 1);
+  EXPECT_EQ(as_lattice(model.bodies[0])->thickness, 1);
   EXPECT_THAT(model.warnings, ElementsAre(HasSubstr("set `thickness`")));
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "muslin/component/shell/shell_body.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/describe.hpp"
 #include "muslin/scene/model.hpp"
@@ -58,8 +59,8 @@ class ShellModel : public testing::Test {
 
 TEST_F(ShellModel, IsTheMeshItself) {
   const Model model = build(body("sheet.obj", "rotate = [0, 90, 0]\ntranslate = [0, 2, 0]\nscale = 2\n"));
-  const Body& cloth = model.bodies[0];
-  EXPECT_TRUE(cloth.is_shell());
+  const Component& cloth = model.bodies[0];
+  EXPECT_TRUE(as_shell(cloth) != nullptr);
   EXPECT_EQ(model.vertex_count(), 20u);
   EXPECT_EQ(model.rest_positions, cloth.mesh.positions);
   EXPECT_NEAR(cloth.statistics.mass, 0.5 * 1.6 * 1.2, 1e-12);

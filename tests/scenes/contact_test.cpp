@@ -34,8 +34,8 @@ class Watched : public SceneRun {
     return true;
   }
 
-  const Body& body(const std::string& name) const {
-    for (const Body& body : model().bodies)
+  const Component& body(const std::string& name) const {
+    for (const Component& body : model().bodies)
       if (body.name == name) return body;
     throw std::invalid_argument("no body " + name);
   }

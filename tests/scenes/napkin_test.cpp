@@ -9,7 +9,7 @@ namespace {
 
 TEST(Napkin, FallsHangsAndKeepsItsLength) {
   SceneRun run("napkin.toml", {"solver.effort=draft"});
-  EXPECT_TRUE(run.body().is_shell());
+  EXPECT_TRUE(as_shell(run.body()) != nullptr);
   EXPECT_NEAR(run.body().statistics.mass, 0.1503 * 0.16, 1e-9);
   run.until_frame(6);
   // It swings down, even on both sides.

@@ -15,8 +15,8 @@ bool all_finite(const std::vector<Vec3>& points) {
 TEST(Leaf, KeepsItsOutlineAtRest) {
   const SceneRun run("leaf.toml");
   const BodyStatistics& leaf = run.body().statistics;
-  EXPECT_EQ(run.body().contour.method, ContourMethod::squares);
-  EXPECT_LT(leaf.contour_distance, 0.5 * run.body().lattice.width);
+  EXPECT_EQ(run.lattice_body().contour.method, ContourMethod::squares);
+  EXPECT_LT(leaf.contour_distance, 0.5 * run.lattice_body().lattice.width);
   EXPECT_EQ(leaf.coverage, 1);
 }
 

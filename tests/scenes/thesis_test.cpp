@@ -33,7 +33,7 @@ TEST(Thesis2TwoCorners, MiddleOfTheLowerEdgeHangsLowest) {
 TEST(Thesis2TwoCorners, SkinAndContourFallAlike) {
   SceneRun run("thesis/2_two_corners.toml");
   run.until_frame(24);
-  const Body& body = run.body();
+  const LatticeBody& body = run.lattice_body();
   const auto mean = [&](const Embedding& embedding) {
     std::vector<Vec3> points(embedding.size());
     embedding.apply(run.now(), points);

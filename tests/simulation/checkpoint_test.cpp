@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/simulation/fingerprint.hpp"
@@ -110,7 +111,7 @@ TEST(Checkpoint, FingerprintIsThatOfTheBodies) {
   other.rest_positions[0].y() = 1e-12;
   EXPECT_NE(model_fingerprint(other), fingerprint);
   other = model;
-  other.scene.bodies.push_back({});
+  other.bodies.push_back(std::make_shared<LatticeBody>());
   EXPECT_NE(model_fingerprint(other), fingerprint);
 }
 

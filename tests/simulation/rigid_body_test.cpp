@@ -17,8 +17,12 @@ std::shared_ptr<const Model> build(const std::string& text) {
   return std::make_shared<const Model>(build_model(parse_scene(text, "scene.toml")));
 }
 
+/// The colliders come after the bodies.
+const Component& collider_of(const Simulation& simulation, std::size_t index) {
+  return simulation.model().bodies[simulation.model().scene.bodies.size() + index];
+}
 ConstVectors body(const Simulation& simulation, std::size_t collider, const std::vector<Vec3>& all) {
-  return simulation.model().of(simulation.model().collider(collider), all);
+  return simulation.model().of(collider_of(simulation, collider), all);
 }
 Vec3 mean(ConstVectors x) { return (x[0] + x[1] + x[2] + x[3]) / 4; }
 Vec3 centre(const Simulation& simulation, std::size_t collider = 0) {
@@ -29,7 +33,7 @@ Vec3 velocity(const Simulation& simulation, std::size_t collider = 0) {
 }
 /// Of the ball's drawn surface, the farthest from round, in radii.
 double out_of_round(const Simulation& simulation, double radius) {
-  const Body& ball = simulation.model().collider(0);
+  const Component& ball = collider_of(simulation, 0);
   std::vector<Vec3> skin(ball.mesh.vertex_count());
   ball.skin.apply(body(simulation, 0, simulation.state().positions), skin);
   double worst = 0;
@@ -125,7 +129,7 @@ TEST(RigidBody, IsHeldByAPinUntilItIsLetGo) {
   EXPECT_NEAR(centre(simulation).y(), 0.5, 1e-12);
   EXPECT_NEAR(centre(simulation).x(), 5.0 / 24 / 0.25 * 0.1, 1e-12);
   for (int frame = 0; frame < 7; ++frame) simulation.advance();
-  const double mass = simulation.model().collider(0).statistics.mass, t = 0.25;
+  const double mass = collider_of(simulation, 0).statistics.mass, t = 0.25;
   EXPECT_NEAR(centre(simulation).y(), 0.5 - 5 * t * t, 0.02);
   EXPECT_NEAR(velocity(simulation).x(), 0.4 + t / mass, 0.01);
   EXPECT_LT(out_of_round(simulation, 0.1), 1e-5);
@@ -154,7 +158,7 @@ TEST(Collider, LiftsClothThatIsInItsWay) {
   std::filesystem::remove(file);
   for (int frame = 0; frame < 11; ++frame) simulation.advance();
   EXPECT_NEAR(centre(simulation).y(), 0.1, 1e-9);
-  const Body& cloth = simulation.model().bodies[0];
+  const Component& cloth = simulation.model().bodies[0];
   const ConstVectors x = simulation.model().of(cloth, simulation.state().positions);
   EXPECT_GT(x[x.size() / 2].y(), 0.2);
   EXPECT_GT(simulation.diagnostics().min_distance, 0);

@@ -12,6 +12,7 @@
 #include "support/cloth_grid.hpp"
 #include "support/simple_potentials.hpp"
 
+#include "muslin/component/shell/shell_body.hpp"
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"
@@ -46,9 +47,10 @@ class ContactScene {
   /// Cloth where `grid` says, its rest shape flat as ClothGrid makes it. Returns its first vertex.
   int add_cloth(const ClothGrid& grid, const ClothMaterial& m = {}, ContactBody contact = {}) {
     const double spacing = (grid.rest[1] - grid.rest[0]).norm();
-    Body body;
+    const auto built = std::make_shared<ShellBody>();
+    ShellBody& body = *built;
+    body.settings.material.shell = ShellMaterial{};
     body.name = "cloth " + std::to_string(model.bodies.size());
-    body.model = BodyModel::shell;
     body.mesh.positions = grid.positions;
     body.mesh.face_offsets = {0};
     for (const Vec3i& t : grid.triangles) {
@@ -73,7 +75,7 @@ class ContactScene {
     distance = std::min(distance, 0.2 * spacing);
     bodies.push_back(contact);
     model.scene.bodies.emplace_back().name = body.name;
-    model.bodies.push_back(body);
+    model.bodies.push_back(built);
     return body.first_vertex;
   }
 
@@ -149,7 +151,7 @@ class ContactScene {
   }
 
  private:
-  void add(const Body& body, std::shared_ptr<const Potential> potential) {
+  void add(const Component& body, std::shared_ptr<const Potential> potential) {
     const std::string name = body.name + ": " + std::to_string(model.potentials.size());
     model.potentials.push_back({name, EnergyRole::elastic,
                                 std::make_shared<RestrictedPotential>(

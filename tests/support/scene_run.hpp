@@ -32,7 +32,8 @@ class SceneRun {
 
   const Simulation& simulation() const { return simulation_; }
   const Model& model() const { return simulation_.model(); }
-  const Body& body() const { return model().bodies.front(); }
+  const Component& body() const { return model().bodies.front(); }
+  const LatticeBody& lattice_body() const { return *as_lattice(body()); }
   const std::vector<Vec3>& now() const { return simulation_.state().positions; }
   const std::vector<Vec3>& rest() const { return model().rest_positions; }
 
@@ -79,14 +80,14 @@ class SceneRun {
   /// Volume of all voxels over that at rest.
   double volume_ratio() const {
     double volume = 0;
-    for (const auto& tet : build_tetrahedra(body().lattice)) {
+    for (const auto& tet : build_tetrahedra(lattice_body().lattice)) {
       const auto corner = [&](int i) {
         return now()[static_cast<std::size_t>(tet[static_cast<std::size_t>(i)])];
       };
       volume += (corner(1) - corner(0)).dot((corner(2) - corner(0)).cross(corner(3) - corner(0))) / 6;
     }
-    const double width = body().lattice.width;
-    return volume / (static_cast<double>(body().lattice.voxel_count()) * width * width * width);
+    const double width = lattice_body().lattice.width;
+    return volume / (static_cast<double>(lattice_body().lattice.voxel_count()) * width * width * width);
   }
 
  private:

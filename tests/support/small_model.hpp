@@ -8,6 +8,7 @@
 
 #include "support/lattice_box.hpp"
 
+#include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/energy/spring_damping.hpp"
 #include "muslin/energy/spring_energy.hpp"
 #include "muslin/lattice/embedding.hpp"
@@ -93,7 +94,8 @@ inline Model small_model(const SmallModelOptions& options = {}) {
   model.scene.solver.tolerance = options.tolerance;
   model.scene.solver.linear_tolerance = 1e-13;
 
-  Body body;
+  const auto built = std::make_shared<LatticeBody>();
+  LatticeBody& body = *built;
   body.name = options.body_name;
   body.lattice = box_lattice({3, 2, 1});
   body.springs = build_springs(body.lattice, Bracing::kuhn);
@@ -159,7 +161,7 @@ inline Model small_model(const SmallModelOptions& options = {}) {
   probe.name = "tip";
   probe.point = embed(body.lattice, std::vector<Vec3>{Vec3(1.5, 0, 0.5)});
   model.probes.push_back(probe);
-  model.bodies.push_back(std::move(body));
+  model.bodies.push_back(built);
   return model;
 }
 

@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 
 #include "muslin/cache/export_formats.hpp"
-#include "muslin/cache/vtk_file.hpp"
+#include "muslin/io/vtk_file.hpp"
 
 namespace muslin {
 namespace {

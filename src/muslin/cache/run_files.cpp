@@ -80,6 +80,24 @@ std::vector<std::string> names_of(const std::string& body) {
           files.contour_cache, files.lattice_mesh, files.lattice_cache};
 }
 
+/// Returns the names that run.json lists for a body, of files beside it that begin with its name.
+std::vector<std::string> listed_names(const nlohmann::json& body) {
+  const std::string name = body.value("name", "");
+  std::vector<std::string> names = names_of(name);
+  for (const nlohmann::json& entry : body) {
+    for (const char* key : {"mesh", "cache"}) {
+      const auto at = entry.is_object() ? entry.find(key) : entry.end();
+      if (at == entry.end() || !at->is_string()) continue;
+      const std::string file = at->get<std::string>();
+      if (file.starts_with(name + ".") && file.find_first_of("/\\") == std::string::npos)
+        names.push_back(file);
+    }
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
 void remove_file(const fs::path& path) {
   std::error_code code;
   fs::remove(path, code);
@@ -112,7 +130,7 @@ void remove_run_files(const fs::path& directory) {
   std::vector<fs::path> doomed;
   const auto json = nlohmann::json::parse(read_file(directory / "run.json"), nullptr, false);
   for (const auto& body : json.value("bodies", nlohmann::json::array()))
-    for (const std::string& name : names_of(body.value("name", ""))) doomed.push_back(directory / name);
+    for (const std::string& name : listed_names(body)) doomed.push_back(directory / name);
   for (const CheckpointFile& file : list_checkpoints(directory)) doomed.push_back(file.path);
   // run.json is removed last: until then the directory is recognised as a run and can be cleaned again.
   for (const std::string& name : own_names()) doomed.push_back(directory / name);

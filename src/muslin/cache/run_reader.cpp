@@ -9,10 +9,10 @@
 
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/tables.hpp"
-#include "muslin/cache/vtk_file.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/input_file.hpp"
 #include "muslin/io/mesh_file.hpp"
+#include "muslin/io/vtk_file.hpp"
 #include "muslin/scene/colours.hpp"
 
 namespace muslin {
@@ -57,8 +57,8 @@ bool describes_run(const Json& run) {
                      [](const Json& body) { return body.is_object() && is_text(body, "name"); });
 }
 
-/// Runs from before other models existed lack the key.
-bool is_lattice(const Json& body) { return body.value("model", "lattice") == "lattice"; }
+/// True if the run caches a lattice of the body; the first runs had nothing else, and do not say so.
+bool has_lattice_cache(const Json& body) { return body.contains("lattice") || !body.contains("model"); }
 
 }  // namespace
 
@@ -144,7 +144,7 @@ RunReader::RunReader(fs::path directory) : impl_(std::make_unique<Impl>()) {
       frames = std::min(frames, static_cast<std::size_t>(points.cache.samples()));
     };
     fit(tracks.skin, tracks.skin_mesh.vertex_count(), files.skin_cache);
-    if (is_lattice(body)) {
+    if (has_lattice_cache(body)) {
       VtkVoxels voxels = read_voxels(impl.directory / files.lattice_mesh);
       tracks.shape = {std::move(voxels.points), std::move(voxels.voxels)};
       tracks.contour = track(files.contour_cache);
@@ -186,12 +186,11 @@ Vec3 RunReader::colour(int body) const {
   const auto b = static_cast<std::size_t>(body);
   const Json scene = impl_->run.value("scene", Json());
   if (!scene.is_object()) return palette_colour(b);
-  // Bodies come first, then colliders.
-  const std::size_t bodies = scene.value("body", Json::array()).size();
-  const bool collider = b >= bodies && scene.contains("collider");
-  const std::string list =
-      collider ? "/collider/" + std::to_string(b - bodies) : "/body/" + std::to_string(b);
-  const Json own = scene.value(Json::json_pointer(list + "/colour"), Json());
+  const bool collider = impl_->body(body).collider;
+  Json own;
+  for (const Json& settings : scene.value(collider ? "collider" : "body", Json::array()))
+    if (settings.is_object() && settings.value("name", Json()) == Json(impl_->names[b]))
+      own = settings.value("colour", Json());
   const auto is_number = [](const Json& value) { return value.is_number(); };
   if (!own.is_array() || own.size() != 3 || !std::all_of(own.begin(), own.end(), is_number))
     return collider ? collider_colour() : palette_colour(b);

@@ -16,14 +16,12 @@
 #include "muslin/cache/run_files.hpp"
 #include "muslin/cache/selections.hpp"
 #include "muslin/cache/tables.hpp"
-#include "muslin/cache/vtk_file.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/input_file.hpp"
 #include "muslin/core/output_file.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/describe.hpp"
-#include "muslin/scene/names.hpp"
 #include "muslin/scene/scene_table.hpp"
 #include "muslin/simulation/checkpoint.hpp"
 #include "muslin/version.hpp"
@@ -81,16 +79,24 @@ Json read_summary(const fs::path& directory) {
   return run;
 }
 
-bool has_stretch_limit(const Model& model) {
-  const std::vector<BodySettings>& bodies = model.scene.bodies;
-  return std::any_of(bodies.begin(), bodies.end(),
-                     [](const BodySettings& body) { return body.stretch_limit.has_value(); });
+/// The files of cached points of a component.
+struct PointsFiles {
+  std::string mesh, cache;
+};
+PointsFiles points_files(const std::string& body, const CachedPoints& points) {
+  return {fmt::format("{}.{}.{}", body, points.name, points.extension),
+          fmt::format("{}.{}.pc2", body, points.name)};
 }
 
-/// The open caches of a body.
+bool has_stretch_limit(const Model& model) {
+  return std::any_of(model.bodies.begin(), model.bodies.end(),
+                     [](const Component& body) { return body.stretch_limit().has_value(); });
+}
+
+/// The open caches of a component: its skin, and its other cached points in their order.
 struct BodyCaches {
   Pc2Writer skin;
-  std::optional<Pc2Writer> contour, lattice;  // a shell's skin is all there is of it
+  std::vector<Pc2Writer> others;
 };
 
 }  // namespace
@@ -194,15 +200,10 @@ void RunWriter::Impl::start() {
   write_atomically(directory / "scene.toml", model.scene.text);
   write_atomically(directory / "stats.json", statistics_json(model));
   write_atomically(directory / "selections.json", selections_json(model));
-  for (const Body& body : model.bodies) {
-    const BodyFiles files = body_files(body.name);
-    write_mesh(directory / files.skin_mesh, body.mesh);
-    if (!body.has_lattice()) continue;
-    write_mesh(directory / files.contour_mesh, body.contour.mesh);
-    VtkGrid grid;
-    grid.points = flat(model.of(body, model.rest_positions));
-    for (const auto& voxel : body.lattice.voxel_vertices) grid.add_voxel(voxel);
-    write_vtu(directory / files.lattice_mesh, grid);
+  for (const Component& body : model.bodies) {
+    write_mesh(directory / body_files(body.name).skin_mesh, body.mesh);
+    for (const CachedPoints& points : body.cached_points())
+      points.write_rest(directory / points_files(body.name, points).mesh);
   }
   open_files(0);
   append_points();
@@ -214,15 +215,16 @@ void RunWriter::Impl::start() {
 /// Opens the caches and tables with their first `frames` frames kept; 0 begins them.
 void RunWriter::Impl::open_files(int frames) {
   const auto mode = frames == 0 ? OutputFile::Mode::replace : OutputFile::Mode::resume;
-  for (const Body& body : model().bodies) {
-    const BodyFiles files = body_files(body.name);
+  for (const Component& body : model().bodies) {
     const auto open = [&](const std::string& name, std::size_t points) {
       return Pc2Writer(directory / name, points, mode, frames);
     };
-    caches.push_back({open(files.skin_cache, body.mesh.vertex_count()), {}, {}});
-    if (!body.has_lattice()) continue;
-    caches.back().contour = open(files.contour_cache, body.contour.mesh.vertex_count());
-    caches.back().lattice = open(files.lattice_cache, static_cast<std::size_t>(body.vertex_count));
+    caches.push_back({open(body_files(body.name).skin_cache, body.mesh.vertex_count()), {}});
+    for (const CachedPoints& points : body.cached_points()) {
+      const std::size_t count =
+          points.embedding ? points.embedding->size() : static_cast<std::size_t>(body.vertex_count);
+      caches.back().others.push_back(open(points_files(body.name, points).cache, count));
+    }
   }
   const auto table = [&](const char* name, std::string_view header, bool is_there) {
     const fs::path path = directory / name;
@@ -311,16 +313,22 @@ void RunWriter::Impl::append_points() {
   const Model& model = this->model();
   std::vector<Vec3> points;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Body& body = model.bodies[b];
+    const Component& body = model.bodies[b];
     const ConstVectors q = model.of(body, simulation.state().positions);
     points.resize(body.skin.size());
     body.skin.apply(q, points);
     caches[b].skin.append(points);
-    if (!body.has_lattice()) continue;
-    points.resize(body.contour.embedding.size());
-    body.contour.embedding.apply(q, points);
-    caches[b].contour->append(points);
-    caches[b].lattice->append(q);
+    auto cache = caches[b].others.begin();
+    for (const CachedPoints& others : body.cached_points()) {
+      if (others.embedding) {
+        points.resize(others.embedding->size());
+        others.embedding->apply(q, points);
+        cache->append(points);
+      } else {
+        cache->append(q);
+      }
+      ++cache;
+    }
   }
 }
 
@@ -339,8 +347,7 @@ void RunWriter::Impl::append_rows() {
 void RunWriter::Impl::sync() {
   for (BodyCaches& cache : caches) {
     cache.skin.sync();
-    if (cache.contour) cache.contour->sync();
-    if (cache.lattice) cache.lattice->sync();
+    for (Pc2Writer& others : cache.others) others.sync();
   }
   diagnostics.sync();
   probes.sync();
@@ -383,19 +390,15 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
   run["frames"] = total_frames;
   run["frame_rate"] = model.scene.time.frame_rate;
   run["bodies"] = Json::array();
-  for (const Body& body : model.bodies) {
+  for (const Component& body : model.bodies) {
     const BodyFiles files = body_files(body.name);
     Json entry = {{"name", body.name},
-                  {"model", name_of(body_model_names(), body.model)},
+                  {"model", body.kind()},
                   {"skin", {{"mesh", files.skin_mesh}, {"cache", files.skin_cache}}}};
-    const std::size_t index = run["bodies"].size();
-    if (index >= model.scene.bodies.size()) {
-      const ColliderSettings& collider = model.scene.colliders[index - model.scene.bodies.size()];
-      entry["shape"] = name_of(collider_shape_names(), collider.shape);
-    }
-    if (body.has_lattice()) {
-      entry["contour"] = {{"mesh", files.contour_mesh}, {"cache", files.contour_cache}};
-      entry["lattice"] = {{"mesh", files.lattice_mesh}, {"cache", files.lattice_cache}};
+    if (body.is_collider()) entry["shape"] = body.appearance().shape;
+    for (const CachedPoints& points : body.cached_points()) {
+      const PointsFiles names = points_files(body.name, points);
+      entry[points.name] = {{"mesh", names.mesh}, {"cache", names.cache}};
     }
     run["bodies"].push_back(entry);
   }
@@ -431,10 +434,10 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
 RunWriter::RunWriter(fs::path directory, Simulation& simulation, int total_frames, bool resume,
                      RunHistory history)
     : impl_(std::make_unique<Impl>(std::move(directory), simulation, total_frames, history)) {
-  for (const Body& body : simulation.model().bodies) body_files(body.name);  // refuses impossible names
+  for (const Component& body : simulation.model().bodies) body_files(body.name);  // refuses impossible names
   impl_->claim();
   std::vector<std::string> bodies;
-  for (const Body& body : simulation.model().bodies) bodies.push_back(body.name);
+  for (const Component& body : simulation.model().bodies) bodies.push_back(body.name);
   remove_unfinished_files(impl_->directory, bodies);
   impl_->resumed = resume && impl_->resume();
   if (!impl_->resumed) {

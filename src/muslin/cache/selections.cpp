@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "muslin/component/select.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/input_file.hpp"
-#include "muslin/scene/select.hpp"
 
 namespace muslin {
 namespace {
@@ -42,9 +42,9 @@ Selections selections_of(const Model& model) {
   Selections selections;
   for (const Pin& pin : model.pins) {
     if (pin.vertices.empty()) continue;
-    const Body& body = model.body_of(static_cast<std::size_t>(pin.vertices.front()));
-    if (body.is_rigid()) continue;  // held as a whole, by its control vertices
-    Chosen chosen{pin.name, static_cast<int>(&body - model.bodies.data()), {}, pin.from, pin.until, -1};
+    const Component& body = model.body_of(static_cast<std::size_t>(pin.vertices.front()));
+    if (!body.selects_vertices()) continue;  // held as a whole
+    Chosen chosen{pin.name, model.bodies.index_of(body), {}, pin.from, pin.until, -1};
     for (const int v : pin.vertices) chosen.vertices.push_back(v - body.first_vertex);
     selections.pins.push_back(std::move(chosen));
   }
@@ -52,8 +52,8 @@ Selections selections_of(const Model& model) {
     const ForceSettings& force = model.scene.forces[f];
     if (force.type != ForceSettings::Type::point) continue;
     if (!force.where) continue;
-    const Body& body = model.body(force.body);
-    selections.point_forces.push_back({force.name, static_cast<int>(&body - model.bodies.data()),
+    const Component& body = model.body(force.body);
+    selections.point_forces.push_back({force.name, model.bodies.index_of(body),
                                        select_vertices(body, *force.where, "force " + force.name), force.from,
                                        force.until, static_cast<int>(f)});
   }

@@ -53,7 +53,7 @@ std::string probe_rows(const Simulation& simulation) {
   const Diagnostics& row = simulation.diagnostics();
   std::string text;
   for (const Probe& probe : model.probes) {
-    const Body& body = model.bodies[static_cast<std::size_t>(probe.body)];
+    const Component& body = model.bodies[static_cast<std::size_t>(probe.body)];
     Vec3 x = Vec3::Zero(), v = Vec3::Zero();
     probe.point.apply(model.of(body, state.positions), Vectors(&x, 1));
     probe.point.apply(model.of(body, state.velocities), Vectors(&v, 1));

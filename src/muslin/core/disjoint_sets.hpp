@@ -21,6 +21,12 @@ class DisjointSets {
     a = find(a), b = find(b);
     above(std::max(a, b)) = std::min(a, b);
   }
+  /// Returns find(thing) of each.
+  std::vector<int> find_all() {
+    std::vector<int> all(above_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = find(static_cast<int>(i));
+    return all;
+  }
 
  private:
   int& above(int thing) { return above_[static_cast<std::size_t>(thing)]; }

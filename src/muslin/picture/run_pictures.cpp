@@ -144,16 +144,13 @@ Image draw_start(const Model& model, const std::vector<Crossing>& crossings) {
   CameraFit fit({}, static_cast<double>(render.width) / render.height);
   Box bounds;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Body& body = model.bodies[b];
-    const bool collider = b >= model.scene.bodies.size();
-    const Vec3 colour = colour_of(model.scene, b);
-    Look look = collider ? prop_look() : body.sheet ? fabric_look(colour) : solid_look(colour);
+    const Component& body = model.bodies[b];
+    const Vec3 colour = colour_of(body, b);
+    Look look = body.is_collider() ? prop_look() : body.sheet ? fabric_look(colour) : solid_look(colour);
     look.colour = colour;
     scene.surfaces.push_back(make_surface(body.mesh, look));
     view.surfaces.push_back({body.mesh.positions, {}});
-    const bool plane = collider && model.scene.colliders[b - model.scene.bodies.size()].shape ==
-                                       ColliderSettings::Shape::plane;
-    if (plane) continue;
+    if (body.appearance().unbounded) continue;
     fit.add(body.mesh.positions);
     bounds.extend(body.mesh.bounds());
   }

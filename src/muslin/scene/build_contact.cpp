@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,34 +13,17 @@
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
-#include "muslin/geometry/edge_length.hpp"
-#include "muslin/material/lattice_moduli.hpp"
 
 namespace muslin {
 namespace {
 
-using Shape = ColliderSettings::Shape;
-
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double size_share = 1.0 / 500, edge_share = 0.2;  // of d̂
-constexpr double thin = 5e-4, thin_share = 0.1;             // thickness of shells: [m], of the mean edge
-constexpr double stiffness_share = 0.15;
 /// With the least stiffness this share of its points carries the body's weight at half the range.
 constexpr double carrying_share = 0.1, gravity = 9.81;
 constexpr double floor_share = 0.005;       // of the gap floor, in d̂
 /// Bodies at rest have a gap of a little less than d̂. Below this share of it contact pushes them apart.
 constexpr double pressed_share = 0.9;
-
-double lattice_stiffness(const Body& body, const BodySettings& settings) {
-  const Material& m = settings.material;
-  const ElasticModuli moduli = elastic_moduli(
-      {m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus}, settings.bracing, m.volume_modulus);
-  const double width = body.lattice.width;
-  // The springs of a sheet have the stiffness of its thickness, unless every voxel counts full.
-  const bool thin = body.sheet && settings.mass == BodySettings::Mass::solid;
-  return stiffness_share * (moduli.youngs + m.young_modulus) *
-         (thin ? std::min(width, body.thickness) : width);
-}
 
 class ContactBuilder {
  public:
@@ -54,17 +37,17 @@ class ContactBuilder {
     }
     prescribed_.assign(model_.vertex_count(), 0);
     groups_.assign(model_.vertex_count(), -1);
-    for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
-      if (scene_.bodies[b].contact) add_body(model_.bodies[b], scene_.bodies[b]);
-    for (std::size_t c = 0; c < scene_.colliders.size(); ++c)
-      if (scene_.colliders[c].contact) add_collider(model_.collider(c), scene_.colliders[c]);
+    for (const Component& component : model_.bodies)
+      if (const std::optional<ContactPart> part = component.contact_part()) add(component, *part);
     if (!can_touch()) return;
     finish();
   }
 
  private:
   bool wanted() const {
-    return !scene_.colliders.empty() || scene_.contact.given || scene_.bodies.size() > 1;
+    return scene_.contact.given || model_.bodies.size() > 1 ||
+           std::any_of(model_.bodies.begin(), model_.bodies.end(),
+                       [](const Component& component) { return component.is_collider(); });
   }
 
   bool can_touch() const {
@@ -76,155 +59,39 @@ class ContactBuilder {
     return false;
   }
 
-  void add_body(const Body& body, const BodySettings& settings) {
-    const Triangulation cut = triangulate(body.mesh);
-    const double edge = mean_edge(body.mesh.positions, cut.triangles);
-    ContactBody contact;
-    contact.self_contact = settings.self_contact;
-    contact.friction = settings.friction;
-    if (body.is_shell()) {
-      const ShellMaterial& m = *settings.material.shell;
-      contact.radius = settings.shell_thickness.value_or(std::min(thin, thin_share * edge)) / 2;
-      contact.stiffness = stiffness_share * std::sqrt(m.membrane_warp * m.membrane_weft);
-    } else {
-      contact.radius = body.sheet ? body.thickness / 2 : 0;
-      contact.stiffness = lattice_stiffness(body, settings);
+  /// Appends a component's surface, its points and vertices counted within the model.
+  void add(const Component& component, const ContactPart& part) {
+    const int first_vertex = component.first_vertex, first_point = static_cast<int>(rest_.size());
+    const auto first_entry = static_cast<int>(entries_.size());
+    for (const SurfaceMap::Entry& entry : part.entries)
+      entries_.push_back({first_vertex + entry.vertex, entry.weight});
+    for (std::size_t p = 0; p < part.rest.size(); ++p) {
+      offsets_.push_back(first_entry + part.offsets[p + 1]);
+      body_of_point_.push_back(static_cast<int>(bodies_.size()));
     }
-    // A body without stretch resistance still needs contact to carry its weight.
-    if (!(contact.stiffness > 0)) contact.mass = mean_mass(body);
-    note_size(body, edge);
-    add_mesh(body, cut, contact);
-    if (body.has_lattice() && edge > 2 * body.lattice.width) {
-      model_.warnings.push_back(
-          fmt::format("body {}: contact sees its mesh, whose edges of {:.3g} m do not bend as its voxels do; "
-                      "subdivide the mesh",
-                      body.name, edge));
+    rest_.insert(rest_.end(), part.rest.begin(), part.rest.end());
+    for (const Vec3i& triangle : part.triangles)
+      triangles_.emplace_back(triangle + Vec3i::Constant(first_point));
+    faces_.insert(faces_.end(), part.faces.begin(), part.faces.end());
+    for (ContactPlane plane : part.planes) {
+      plane.point += first_point;
+      if (plane.turns())
+        for (int& point : plane.span) point += first_point;
+      planes_.push_back(plane);
     }
-  }
-
-  /// Returns the mean mass of a vertex [kg].
-  double mean_mass(const Body& body) const {
-    const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
-    return std::accumulate(model_.masses.begin() + first, model_.masses.begin() + first + body.vertex_count,
-                           0.0) /
-           body.vertex_count;
-  }
-
-  void add_collider(const Body& body, const ColliderSettings& settings) {
-    ContactBody contact;
-    contact.fixed = body.prescribed;
-    contact.self_contact = false;
-    contact.friction = settings.friction;
-    contact.stiffness = infinite;
-    const auto first = static_cast<std::size_t>(body.first_vertex);
-    if (body.prescribed) std::fill_n(prescribed_.begin() + body.first_vertex, body.vertex_count, 1);
-    if (body.is_rigid()) std::fill_n(groups_.begin() + body.first_vertex, body.vertex_count, group_count_++);
-    if (!body.prescribed) {
-      contact.mass = model_.masses[first];
-      note_size(body, body.mean_edge);
-    }
-    switch (settings.shape) {
-      case Shape::plane: {
-        const Vec3 normal = start_of(body).linear() * settings.normal;
-        ContactPlane plane = {add_point(body, body.frame.centre), normal};
-        if (turns(settings.motion)) {
-          // Within the corners that carry them.
-          const double reach = body.frame.radii.x() / 2;
-          const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
-          plane.span = {add_point(body, body.frame.centre + reach * u),
-                        add_point(body, body.frame.centre + reach * v)};
-        }
-        planes_.push_back(plane);
-        break;
-      }
-      case Shape::sphere: {
-        const int point = add_point(body, body.frame.centre);
-        add_triangle(Vec3i::Constant(point), -1);
-        contact.radius = settings.radius;
-        contact.frame = frame_of(body);
-        break;
-      }
-      case Shape::capsule: {
-        const Eigen::Isometry3d start = start_of(body);
-        const int a = add_point(body, start * settings.points[0]),
-                  b = add_point(body, start * settings.points[1]);
-        add_triangle({a, b, b}, -1);
-        contact.radius = settings.radius;
-        contact.frame = frame_of(body);
-        break;
-      }
-      case Shape::box:
-      case Shape::mesh:
-        add_mesh(body, triangulate(body.mesh), contact);
-        return;
-    }
-    finish_body(body, contact);
-  }
-
-  static bool turns(const Motion& motion) {
-    return std::any_of(motion.keys.begin(), motion.keys.end(), [&](const Motion::Key& key) {
-      return !key.rotate.isApprox(motion.keys.front().rotate, 1e-12);
-    });
-  }
-
-  /// Returns the vertices that carry a round body, from which friction gets its rotation.
-  static std::array<int, 4> frame_of(const Body& body) {
-    const int first = body.first_vertex;
-    return {first, first + 1, first + 2, first + 3};
-  }
-
-  /// Returns the motion of a collider from its given shape at time 0.
-  Eigen::Isometry3d start_of(const Body& body) const {
-    for (const Prescribed& p : model_.prescribed)
-      if (p.first == body.first_vertex) return p.motion.at(0);
-    return Eigen::Isometry3d::Identity();
-  }
-
-  void note_size(const Body& body, double edge) {
-    largest_ = std::max(largest_, body.mesh.bounds().sizes().maxCoeff());
-    shortest_edge_ = std::min(shortest_edge_, edge);
-  }
-
-  /// Adds a point of the current body.
-  int add_point(const Body& body, const Vec3& at) {
-    const auto weights = body.frame.weights(at);
-    for (int i = 0; i < 4; ++i)
-      entries_.push_back({body.first_vertex + i, weights[static_cast<std::size_t>(i)]});
-    return close_point(at);
-  }
-
-  int close_point(const Vec3& at) {
-    offsets_.push_back(static_cast<int>(entries_.size()));
-    body_of_point_.push_back(static_cast<int>(bodies_.size()));
-    rest_.push_back(at);
-    return static_cast<int>(rest_.size()) - 1;
-  }
-
-  void add_triangle(const Vec3i& points, int face) {
-    triangles_.push_back(points);
-    faces_.push_back(face);
-  }
-
-  void finish_body(const Body& body, const ContactBody& contact) {
-    bodies_.push_back(contact);
-    names_.push_back(body.name);
-    const auto points = std::count(body_of_point_.begin(), body_of_point_.end(), static_cast<int>(bodies_.size()) - 1);
-    weights_.push_back(gravity * body.statistics.mass / static_cast<double>(std::max<std::ptrdiff_t>(points, 1)));
-  }
-
-  void add_mesh(const Body& body, const Triangulation& cut, const ContactBody& contact) {
-    const int first = static_cast<int>(rest_.size());
-    for (std::size_t p = 0; p < body.skin.size(); ++p) {
-      // A vertex may occur twice, with weight 0.
-      for (std::size_t s = 0; s < 8; ++s) {
-        if (body.skin.weights[p][s] == 0) continue;
-        entries_.push_back({body.first_vertex + body.skin.vertices[p][s], body.skin.weights[p][s]});
-      }
-      close_point(body.mesh.positions[p]);
-    }
-    for (std::size_t t = 0; t < cut.triangles.size(); ++t)
-      add_triangle(cut.triangles[t] + Vec3i::Constant(first), cut.faces[t]);
-    finish_body(body, contact);
+    ContactBody body = part.body;
+    for (int& vertex : body.frame)
+      if (vertex >= 0) vertex += first_vertex;
+    bodies_.push_back(body);
+    names_.push_back(component.name);
+    weights_.push_back(gravity * component.statistics.mass /
+                       static_cast<double>(std::max<std::size_t>(part.rest.size(), 1)));
+    if (body.fixed) std::fill_n(prescribed_.begin() + first_vertex, component.vertex_count, 1);
+    if (!component.deforms())
+      std::fill_n(groups_.begin() + first_vertex, component.vertex_count, group_count_++);
+    largest_ = std::max(largest_, part.size);
+    shortest_edge_ = std::min(shortest_edge_, part.edge);
+    if (!part.warning.empty()) model_.warnings.push_back(part.warning);
   }
 
   void finish() {

@@ -1,32 +1,30 @@
 #include "muslin/scene/build_loads.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "muslin/force/gravity.hpp"
 #include "muslin/force/point_force.hpp"
 #include "muslin/force/wind.hpp"
-#include "muslin/geometry/closest_point.hpp"
-#include "muslin/scene/build_collider.hpp"
 #include "muslin/scene/pin_sequence.hpp"
-#include "muslin/scene/select.hpp"
 
 namespace muslin {
 namespace {
 
-std::vector<int> to_model(const Body& body, std::vector<int> vertices) {
+std::vector<int> to_model(const Component& body, std::vector<int> vertices) {
   for (int& v : vertices) v += body.first_vertex;
   return vertices;
 }
 
-bool acts_on(const ForceSettings& force, const Body& body) {
+bool acts_on(const ForceSettings& force, const Component& body) {
   return force.body.empty() || force.body == body.name;
 }
 
 void add_gravity(Model& model, const ForceSettings& force) {
   std::vector<double> masses(model.vertex_count(), 0.0);
-  for (const Body& body : model.bodies) {
+  for (const Component& body : model.bodies) {
     if (!acts_on(force, body)) continue;
     const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
     std::copy_n(model.masses.begin() + first, body.vertex_count, masses.begin() + first);
@@ -39,32 +37,19 @@ void add_gravity(Model& model, const ForceSettings& force) {
        std::make_shared<Gravity>(std::move(masses), force.value, Window{force.from, force.until})});
 }
 
-/// Returns the shares of the corners in the forces on points of a rigid body, or in that on its centre.
-std::vector<double> shares_of_corners(const Body& body, const ForceSettings& force) {
-  if (!force.where) return {0.25, 0.25, 0.25, 0.25};
-  std::vector<double> shares(4, 0.0);
-  for (const int v : select_vertices(body, *force.where, "force " + force.name))
-    for (std::size_t i = 0; i < 4; ++i) shares[i] += body.skin.weights[static_cast<std::size_t>(v)][i];
-  return shares;
-}
-
 void add_point_force(Model& model, const ForceSettings& force) {
-  const Body& body = model.body(force.body);
-  std::vector<int> vertices;
-  std::vector<double> weights;
-  if (body.is_rigid()) {
-    vertices = to_model(body, {0, 1, 2, 3});
-    weights = shares_of_corners(body, force);
-  } else {
-    vertices = to_model(body, select_vertices(body, *force.where, "force " + force.name));
-  }
+  const Component& body = model.body(force.body);
+  LoadedVertices loaded = body.loaded_vertices(force.where, "force " + force.name);
   model.loads.push_back(
       {force.name, EnergyRole::work,
-       std::make_shared<PointForce>(vertices, force.value, Window{force.from, force.until}, weights)});
+       std::make_shared<PointForce>(to_model(body, std::move(loaded.vertices)), force.value,
+                                    Window{force.from, force.until}, std::move(loaded.shares))});
 }
 
 void add_wind(Model& model, const ForceSettings& force) {
-  for (const Body& body : model.bodies) {
+  const auto soft = std::count_if(model.bodies.begin(), model.bodies.end(),
+                                  [](const Component& body) { return body.is_soft(); });
+  for (const Component& body : model.bodies) {
     if (!acts_on(force, body) || !body.is_soft()) continue;
     Embedding skin = body.skin;
     for (auto& vertices : skin.vertices) {
@@ -85,32 +70,11 @@ void add_wind(Model& model, const ForceSettings& force) {
     wind.seed = static_cast<std::uint64_t>(force.seed);
     // Without a consistent front a face counts from both sides.
     wind.two_sided = body.sheet || body.report.flipped_edges > 0 || body.report.non_manifold_edges > 0;
-    const std::string name = model.scene.bodies.size() > 1 ? force.name + ": " + body.name : force.name;
+    const std::string name = soft > 1 ? force.name + ": " + body.name : force.name;
     model.loads.push_back(
         {name, EnergyRole::work,
          std::make_shared<Wind>(wind, std::move(skin), std::move(triangles), model.vertex_count())});
   }
-}
-
-/// Returns the point of the surface nearest to `at`, carried by the corners of its triangle.
-Embedding point_of_surface(Model& model, const Body& body, const ProbeSettings& settings) {
-  const std::vector<Vec3i> triangles = triangulate(body.mesh).triangles;
-  const ClosestPoint nearest = ClosestPointQuery(body.mesh.positions, triangles)(settings.at);
-  const Vec3i& triangle = triangles[static_cast<std::size_t>(nearest.triangle)];
-  Embedding point;
-  point.vertices.emplace_back().fill(triangle[0]);
-  point.weights.emplace_back().fill(0);
-  for (int c = 0; c < 3; ++c) {
-    point.vertices[0][static_cast<std::size_t>(c)] = triangle[c];
-    point.weights[0][static_cast<std::size_t>(c)] = nearest.barycentric[c];
-  }
-  if (nearest.distance > body.spacing()) {
-    model.warnings.push_back(
-        fmt::format("probe {}: `at` lies {:.3g} m from body `{}`; it moves with the nearest "
-                    "point",
-                    settings.name, nearest.distance, settings.body));
-  }
-  return point;
 }
 
 Vec3 centre_of(const Model& model, const std::vector<int>& vertices) {
@@ -139,12 +103,10 @@ void build_forces(Model& model) {
 
 void build_pins(Model& model) {
   for (const PinSettings& settings : model.scene.pins) {
-    const Body& body = model.body(settings.body);
+    const Component& body = model.body(settings.body);
     Pin pin;
     pin.name = settings.name;
-    pin.vertices =
-        to_model(body, body.is_rigid() ? std::vector<int>{0, 1, 2, 3}
-                                       : select_vertices(body, settings.where, "pin " + settings.name));
+    pin.vertices = to_model(body, body.held_vertices(settings.where, "pin " + settings.name));
     pin.from = settings.from;
     pin.until = settings.until;
     pin.motion = settings.motion;
@@ -156,28 +118,14 @@ void build_pins(Model& model) {
 
 void build_probes(Model& model) {
   for (const ProbeSettings& settings : model.scene.probes) {
-    const Body& body = model.body(settings.body);
+    const Component& body = model.body(settings.body);
     Probe probe;
     probe.name = settings.name;
-    probe.body = static_cast<int>(&body - model.bodies.data());
-    if (body.is_rigid()) {
-      probe.point = embed(body.frame, std::span(&settings.at, 1));
-      model.probes.push_back(std::move(probe));
-      continue;
-    }
-    if (!body.has_lattice()) {
-      probe.point = point_of_surface(model, body, settings);
-      model.probes.push_back(std::move(probe));
-      continue;
-    }
-    probe.point = embed(body.lattice, std::span(&settings.at, 1));
-    const auto& weights = probe.point.weights.front();
-    if (*std::min_element(weights.begin(), weights.end()) < -0.01) {
-      model.warnings.push_back(
-          fmt::format("probe {}: `at` lies outside of body `{}`; it moves with the nearest "
-                      "voxel",
-                      settings.name, settings.body));
-    }
+    probe.body = model.bodies.index_of(body);
+    AttachedPoint attached = body.attach(settings.at);
+    probe.point = std::move(attached.point);
+    if (!attached.warning.empty())
+      model.warnings.push_back(fmt::format("probe {}: `at` {}", settings.name, attached.warning));
     model.probes.push_back(std::move(probe));
   }
 }

@@ -1,14 +1,12 @@
-// Builds the energies, forces, pins and probes of the model from those of the scene.
+// Builds the forces, pins and probes of the model from those of the scene.
 #pragma once
 
 #include "muslin/scene/model.hpp"
 
 namespace muslin {
 
-/// Adds the elastic energies and dampings of every body, the forces, the pins and the probes of
-/// model.scene to `model`, whose bodies, rest positions and masses already exist, and fills in
-/// BodyStatistics::stable_step. Errors: input, with the place in the scene.
-void build_materials(Model& model);
+/// Adds the forces, the pins and the probes of model.scene to `model`, whose components, rest positions and
+/// masses already exist. Errors: input, with the place in the scene.
 void build_forces(Model& model);
 void build_pins(Model& model);
 void build_probes(Model& model);

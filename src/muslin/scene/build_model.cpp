@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "muslin/scene/build_body.hpp"
-#include "muslin/scene/build_collider.hpp"
+#include "muslin/component/kinds.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/potential/restricted.hpp"
 #include "muslin/scene/build_contact.hpp"
 #include "muslin/scene/build_loads.hpp"
 #include "muslin/scene/model.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double max_steps = 1e6;  // of a frame
 
-Progress body_progress(const Progress& whole, std::size_t index, std::size_t count) {
+Progress component_progress(const Progress& whole, std::size_t index, std::size_t count) {
   Progress part;
   part.cancelled = whole.cancelled;
   if (whole.report) {
@@ -29,61 +30,68 @@ Progress body_progress(const Progress& whole, std::size_t index, std::size_t cou
   return part;
 }
 
-/// `masses` and `velocities` are those of the body's vertices.
-void add_vertices(Model& model, Body& body, const Place& place, const std::vector<double>& masses,
-                  const std::vector<Vec3>& velocities) {
-  const std::size_t first = model.vertex_count(), count = static_cast<std::size_t>(body.vertex_count);
+/// Returns the sources of all components, in the order of Model::bodies.
+std::vector<ComponentSource> sources_of(const Scene& scene) {
+  std::vector<ComponentSource> sources;
+  for (const BodySettings& body : scene.bodies) sources.push_back(source_of(body));
+  for (const ColliderSettings& collider : scene.colliders) sources.push_back(source_of(collider));
+  sources.insert(sources.end(), scene.components.begin(), scene.components.end());
+  return sources;
+}
+
+/// Builds components that surround the others last; all keep their places.
+std::vector<std::shared_ptr<Component>> build_components(const Scene& scene,
+                                                         const std::vector<ComponentSource>& sources,
+                                                         std::vector<std::string>& warnings,
+                                                         const Progress& progress) {
+  const SceneFiles files{scene.file, scene.meshes};
+  std::vector<std::shared_ptr<Component>> components(sources.size());
+  Box around;
+  for (const bool surrounds : {false, true}) {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      if (sources[i].surrounds != surrounds) continue;
+      components[i] = sources[i].build({files, scene.time.frame_rate, scene.time.step(), around, warnings,
+                                        component_progress(progress, i, sources.size())});
+      require(components[i] != nullptr, "the source of a component built none", "return a component");
+      if (!surrounds) around.extend(components[i]->mesh.bounds());
+    }
+  }
+  return components;
+}
+
+/// Appends the vertices of a component to those of the model.
+void add_vertices(Model& model, Component& component, const Place& place) {
+  const std::size_t first = model.vertex_count(), count = static_cast<std::size_t>(component.vertex_count);
   if (first + count > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     throw Error(ErrorKind::input, place, "all bodies together have more than 2³¹ vertices",
                 "make `voxel_width` larger or meshes coarser");
   }
-  body.first_vertex = static_cast<int>(first);
+  component.first_vertex = static_cast<int>(first);
+  const std::vector<double> masses = component.masses();
+  const std::vector<Vec3> velocities = component.velocities();
   for (std::size_t v = 0; v < count; ++v) {
-    model.rest_positions.push_back(body.rest_position(v));
+    model.rest_positions.push_back(component.rest_position(v));
     model.velocities.push_back(velocities[v]);
     model.masses.push_back(masses[v]);
-    body.statistics.mass += masses[v];
   }
+  if (!component.motion()) return;
+  model.prescribed.push_back(*component.motion());
+  model.prescribed.back().first = component.first_vertex;
 }
 
-void add_collider(Model& model, BuiltCollider built, const ColliderSettings& settings) {
-  Body& body = built.body;
-  const auto count = static_cast<std::size_t>(body.vertex_count);
-  std::vector<double> masses(count, 0.0);
-  std::vector<Vec3> velocities(count);
-  if (settings.is_free()) {
-    masses.assign(count, body.statistics.mass / static_cast<double>(count));
-    body.statistics.mass = 0;
-    const Vec3 spin = settings.angular_velocity * std::numbers::pi / 180;
-    for (std::size_t v = 0; v < count; ++v)
-      velocities[v] = settings.velocity + spin.cross(body.rest_position(v) - body.frame.centre);
-  } else {
-    const double step = model.scene.time.step();
-    built.motion.positions(step, velocities);
-    for (std::size_t v = 0; v < count; ++v) velocities[v] = (velocities[v] - built.motion.start[v]) / step;
+/// Adds the potentials and loads of a component, as terms of all vertices.
+void add_terms(Model& model, const Component& component) {
+  const auto first = static_cast<std::size_t>(component.first_vertex),
+             count = static_cast<std::size_t>(component.vertex_count);
+  const bool alone = count == model.vertex_count();
+  for (PotentialTerm term : component.potentials) {
+    if (!alone) term.potential = std::make_shared<RestrictedPotential>(term.potential, first, count);
+    model.potentials.push_back({component.name + ": " + term.name, term.role, std::move(term.potential)});
   }
-  add_vertices(model, body, settings.place, masses, velocities);
-  if (body.prescribed) {
-    built.motion.first = body.first_vertex;
-    model.prescribed.push_back(std::move(built.motion));
+  for (LoadTerm term : component.loads) {
+    if (!alone) term.load = std::make_shared<RestrictedLoad>(term.load, first, count);
+    model.loads.push_back({component.name + ": " + term.name, term.role, std::move(term.load)});
   }
-  model.bodies.push_back(std::move(body));
-}
-
-/// Builds planes last, as their shown size depends on the others; each at its place among the bodies.
-void add_colliders(Model& model) {
-  const std::vector<ColliderSettings>& colliders = model.scene.colliders;
-  Box around;
-  for (const Body& body : model.bodies) around.extend(body.mesh.bounds());
-  std::vector<BuiltCollider> built(colliders.size());
-  for (const bool planes : {false, true}) {
-    for (std::size_t c = 0; c < colliders.size(); ++c) {
-      if ((colliders[c].shape == ColliderSettings::Shape::plane) != planes) continue;
-      built[c] = build_collider(model.scene, colliders[c], around, model.warnings);
-      if (!planes) around.extend(built[c].body.mesh.bounds());
-    }
-  }
-  for (std::size_t c = 0; c < colliders.size(); ++c) add_collider(model, std::move(built[c]), colliders[c]);
 }
 
 /// Chooses the number of steps needed for stability at rest, with a margin.
@@ -92,8 +100,7 @@ void choose_explicit_steps(Model& model) {
   if (model.scene.solver.integrator != Integrator::symplectic_euler || time.steps_per_frame) return;
   constexpr double share = 0.9;
   double stable = std::numeric_limits<double>::infinity();
-  for (std::size_t b = 0; b < model.scene.bodies.size(); ++b)
-    stable = std::min(stable, model.bodies[b].statistics.stable_step);
+  for (const Component& body : model.bodies) stable = std::min(stable, body.statistics.stable_step);
   const double steps = std::ceil(1 / (time.frame_rate * share * stable));
   time.steps_per_frame = static_cast<int>(std::clamp(steps, 1.0, max_steps));
 }
@@ -101,9 +108,8 @@ void choose_explicit_steps(Model& model) {
 void warn_of_explicit_steps(Model& model) {
   if (model.scene.solver.integrator != Integrator::symplectic_euler) return;
   const double step = model.scene.time.step();
-  for (std::size_t b = 0; b < model.scene.bodies.size(); ++b) {
-    const Body& body = model.bodies[b];
-    if (model.scene.bodies[b].stretch_limit) {
+  for (const Component& body : model.bodies) {
+    if (body.stretch_limit()) {
       model.warnings.push_back(
           fmt::format("body {}: `stretch_limit` makes symplectic_euler unstable where it pulls; take an "
                       "implicit integrator",
@@ -125,15 +131,14 @@ Model build_model(const Scene& scene, const Progress& progress) {
   Model model;
   model.scene = scene;
   model.warnings = scene.warnings;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Progress part = body_progress(progress, b, scene.bodies.size());
-    Body body = build_body(scene, scene.bodies[b], model.warnings, part);
-    const std::vector<Vec3> velocities(static_cast<std::size_t>(body.vertex_count), scene.bodies[b].velocity);
-    add_vertices(model, body, scene.bodies[b].place, vertex_masses(body, scene.bodies[b]), velocities);
-    model.bodies.push_back(std::move(body));
+  const std::vector<ComponentSource> sources = sources_of(scene);
+  const std::vector<std::shared_ptr<Component>> components =
+      build_components(scene, sources, model.warnings, progress);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    add_vertices(model, *components[i], sources[i].place);
+    model.bodies.push_back(components[i]);
   }
-  add_colliders(model);
-  build_materials(model);
+  for (const Component& component : model.bodies) add_terms(model, component);
   choose_explicit_steps(model);
   build_forces(model);
   build_pins(model);

@@ -1,10 +1,10 @@
-// Provides default colours of bodies and colliders in pictures.
+// Provides default colours of components in pictures.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "muslin/scene/scene.hpp"
+#include "muslin/component/component.hpp"
 
 namespace muslin {
 
@@ -19,11 +19,10 @@ inline Vec3 palette_colour(std::size_t index) {
 /// Returns the colour of colliders: muted, so that bodies stand out.
 inline Vec3 collider_colour() { return {0.52, 0.54, 0.57}; }
 
-/// Returns the colour of a body of the model; colliders are counted after the bodies of the scene.
-inline Vec3 colour_of(const Scene& scene, std::size_t index) {
-  const std::size_t bodies = scene.bodies.size();
-  return index < bodies ? scene.bodies[index].colour.value_or(palette_colour(index))
-                        : scene.colliders[index - bodies].colour.value_or(collider_colour());
+/// Returns the colour of the component with this number.
+inline Vec3 colour_of(const Component& component, std::size_t index) {
+  const Appearance look = component.appearance();
+  return look.colour.value_or(look.shape.empty() ? palette_colour(index) : collider_colour());
 }
 
 }  // namespace muslin

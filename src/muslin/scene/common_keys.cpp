@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "muslin/core/nearest_name.hpp"
-#include "muslin/scene/placement.hpp"
+#include "muslin/component/placement.hpp"
 
 namespace muslin {
 namespace {
@@ -78,6 +78,7 @@ std::vector<std::string> movable_names(const Scene& scene) {
   for (const BodySettings& body : scene.bodies) names.push_back(body.name);
   for (const ColliderSettings& collider : scene.colliders)
     if (collider.is_free()) names.push_back(collider.name);
+  for (const ComponentSource& component : scene.components) names.push_back(component.name);
   return names;
 }
 

@@ -8,25 +8,25 @@
 namespace muslin {
 namespace {
 
-template <class Named>
-const Named& find_by_name(const std::vector<Named>& all, std::string_view name, const std::string& kind) {
+template <class List>
+const auto& find_by_name(const List& all, std::string_view name, const std::string& kind) {
   const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Named& each) { return each.name == name; });
+      std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.name == name; });
   if (found != all.end()) return *found;
   std::vector<std::string> names;
-  for (const Named& each : all) names.push_back(each.name);
+  for (const auto& each : all) names.push_back(each.name);
   throw Error(ErrorKind::usage, "the model has no " + kind + " `" + std::string(name) + "`",
               names.empty() ? "it has none at all" : name_advice(name, names));
 }
 
 }  // namespace
 
-const Body& Model::body(std::string_view name) const { return find_by_name(bodies, name, "body"); }
+const Component& Model::body(std::string_view name) const { return find_by_name(bodies, name, "body"); }
 
 const Probe& Model::probe(std::string_view name) const { return find_by_name(probes, name, "probe"); }
 
-const Body& Model::body_of(std::size_t vertex) const {
-  for (const Body& body : bodies) {
+const Component& Model::body_of(std::size_t vertex) const {
+  for (const Component& body : bodies) {
     const auto first = static_cast<std::size_t>(body.first_vertex);
     if (vertex >= first && vertex - first < static_cast<std::size_t>(body.vertex_count)) return body;
   }

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t grain = 64;
 
-/// Vertices of the mesh that a lattice's may follow, ascending.
-std::vector<int> leaders(const Body& body, const Selection& where) {
+/// Vertices of the mesh that those of a body may follow, ascending.
+std::vector<int> leaders(const Component& body, const Selection& where) {
   for (const MeshGroup& group : body.mesh.groups) {
     if (!where.group || group.name != *where.group) continue;
     std::vector<int> vertices = group.vertices;
@@ -46,7 +46,7 @@ int nearest(const Vec3& place, const std::vector<int>& among, const std::vector<
 
 }  // namespace
 
-void follow_sequence(const Scene& scene, const PinSettings& settings, const Body& body, Pin& pin) {
+void follow_sequence(const Scene& scene, const PinSettings& settings, const Component& body, Pin& pin) {
   const auto file = resolve_path(scene, settings.sequence);
   PointSequence sequence;
   try {
@@ -61,14 +61,14 @@ void follow_sequence(const Scene& scene, const PinSettings& settings, const Body
                             sequence.points, body.name, body.mesh.vertex_count()),
                 "export the sequence from the same mesh");
   }
-  const std::vector<int> among = body.is_shell() ? std::vector<int>{} : leaders(body, settings.where);
+  const std::vector<int> among = body.is_mesh() ? std::vector<int>{} : leaders(body, settings.where);
   pin.points.resize(pin.vertices.size());
   parallel_for(pin.vertices.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const int local = pin.vertices[i] - body.first_vertex;
-      pin.points[i] = body.is_shell() ? local
-                                      : nearest(body.rest_position(static_cast<std::size_t>(local)), among,
-                                                body.mesh.positions);
+      pin.points[i] = body.is_mesh() ? local
+                                     : nearest(body.rest_position(static_cast<std::size_t>(local)), among,
+                                               body.mesh.positions);
     }
   });
   pin.sequence = std::make_shared<const PointSequence>(std::move(sequence));

@@ -10,12 +10,11 @@ int TimeSettings::frames() const {
 }
 
 std::filesystem::path resolve_path(const Scene& scene, const std::string& path) {
-  return scene.file.parent_path() / path;
+  return SceneFiles{scene.file, scene.meshes}.resolve(path);
 }
 
 MeshFile scene_mesh(const Scene& scene, const std::string& path) {
-  const auto own = scene.meshes.find(path);
-  return own != scene.meshes.end() ? MeshFile{*own->second, ""} : read_mesh(resolve_path(scene, path));
+  return SceneFiles{scene.file, scene.meshes}.mesh(path);
 }
 
 }  // namespace muslin

@@ -22,7 +22,7 @@ Subject subject_of(const char* list, const Settings& settings) {
   return {settings.name.empty() ? list : fmt::format("{} `{}`", list, settings.name), settings.place};
 }
 
-/// Names of bodies and colliders are unique among both.
+/// Names of bodies, colliders and components are unique among all.
 template <class Settings>
 void check_names(const char* list, const std::vector<Settings>& items, std::set<std::string>& names) {
   for (const Settings& item : items) {
@@ -52,11 +52,7 @@ void validate(const Scene& scene) {
   std::set<std::string> names;
   check_names("[[body]]", scene.bodies, names);
   check_names("[[collider]]", scene.colliders, names);
-  for (const BodySettings& body : scene.bodies) {
-    if (body.model != BodyModel::lattice && body.model != BodyModel::shell)
-      throw subject_of("[[body]]", body)
-          .error("model", "its model is that of a collider", "use BodyModel::lattice or BodyModel::shell");
-  }
+  check_names("component", scene.components, names);
   scene_table().check(scene, Subject("the scene", {scene.file.string()}));
   const std::vector<std::string> movable = movable_names(scene);
   for (const ForceSettings& force : scene.forces) check_force(scene, force, movable);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "muslin/solver/rigid_prediction.hpp"
-
 namespace muslin {
 namespace {
 
@@ -96,10 +94,7 @@ class Advance {
   }
 
   void predict(Integrator integrator, const State& before, StepContext& context) const {
-    for (const Body& body : model_.bodies) {
-      const auto first = static_cast<std::size_t>(body.first_vertex);
-      if (body.is_rigid() && scratch_.fixed[first] == 0) predict_rigid(integrator, before, first, context);
-    }
+    for (const Component& body : model_.bodies) body.predict(integrator, before, scratch_.fixed, context);
   }
 
   void count(const StepReport& report, bool made) {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "muslin/core/error.hpp"
-#include "muslin/simulation/fingerprint.hpp"
+#include "muslin/core/hash.hpp"
 
 namespace muslin {
 namespace {

@@ -102,8 +102,6 @@ struct RunCosts {
 /// The largest ratio of length and rest length in all bodies at x (#V by 3 [m]): of a spring, or of a shell
 /// in any direction. 1 without bodies.
 MUSLIN_API double max_stretch(const Model& model, ConstVectors x);
-/// That of one body, at x (its #V by 3 [m]).
-MUSLIN_API double max_stretch(const Body& body, ConstVectors x);
 
 /// The stretch of a shell that has a `stretch_limit`, at the end of a frame.
 struct LimitedStretch {

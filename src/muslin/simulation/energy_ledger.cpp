@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "muslin/simulation/fingerprint.hpp"
+#include "muslin/core/hash.hpp"
 
 namespace muslin {
 

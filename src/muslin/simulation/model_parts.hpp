@@ -16,7 +16,7 @@ struct ModelParts {
   std::size_t count() const { return edges.size(); }
 };
 
-/// Vertices of no body are one part.
+/// Vertices of no component are one part.
 ModelParts find_parts(const Model& model);
 
 }  // namespace muslin

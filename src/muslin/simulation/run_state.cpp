@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "muslin/core/error.hpp"
-#include "muslin/simulation/fingerprint.hpp"
+#include "muslin/core/hash.hpp"
 
 namespace muslin {
 

@@ -4,7 +4,6 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/potential/restricted.hpp"
-#include "muslin/simulation/diagnostics.hpp"
 #include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
@@ -40,7 +39,7 @@ std::vector<Vec3> SimulatedBody::points() const {
   return points;
 }
 
-double SimulatedBody::stretch() const { return max_stretch(*body_, positions()); }
+double SimulatedBody::stretch() const { return body_->max_stretch(positions()); }
 
 void SimulatedBody::add_force(const std::string& name, ForceFunction::Function force) {
   const auto first = static_cast<std::size_t>(body_->first_vertex);

@@ -1,4 +1,4 @@
-// SimulatedBody is one body or collider of a running simulation, found by its name: its motion, its stretch,
+// SimulatedBody is one component of a running simulation, found by its name: its motion, its stretch,
 // and forces and energies of a program's own.
 #pragma once
 
@@ -38,10 +38,10 @@ class MUSLIN_API SimulatedBody {
 
  private:
   friend class Simulation;
-  SimulatedBody(Simulation& simulation, const Body& body) : simulation_(&simulation), body_(&body) {}
+  SimulatedBody(Simulation& simulation, const Component& body) : simulation_(&simulation), body_(&body) {}
 
   Simulation* simulation_;
-  const Body* body_;
+  const Component* body_;
 };
 
 }  // namespace muslin

@@ -209,7 +209,7 @@ SimulatedBody Simulation::body(const std::string& name) { return {*this, model()
 
 Vec3 Simulation::probe(const std::string& name) const {
   const Probe& probe = model().probe(name);
-  const Body& body = model().bodies[static_cast<std::size_t>(probe.body)];
+  const Component& body = model().bodies[static_cast<std::size_t>(probe.body)];
   Vec3 point;
   probe.point.apply(model().of(body, state().positions), {&point, 1});
   return point;

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "muslin/component/shell/shell_body.hpp"
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/mesh.hpp"
@@ -115,8 +117,8 @@ void Simulation::cut(const std::string& body, std::span<const std::array<int, 2>
   Scene scene = model().scene;
   const auto settings = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                      [&](const BodySettings& b) { return b.name == body; });
-  const Body& before = model().body(body);
-  if (!before.is_shell())
+  const Component& before = model().body(body);
+  if (as_shell(before) == nullptr)
     throw Error(ErrorKind::usage, fmt::format("\"{}\" is no shell, and only shells can be cut", body),
                 "give the name of a shell");
   if (!settings->rest_mesh.empty()) cut_mesh(scene, settings->rest_mesh, edges);
@@ -125,7 +127,7 @@ void Simulation::cut(const std::string& body, std::span<const std::array<int, 2>
   auto next = std::make_shared<const Model>(build_model(scene));
   std::vector<int> origins;
   for (std::size_t b = 0; b < next->bodies.size(); ++b) {
-    const Body& earlier = model().bodies[b];
+    const Component& earlier = model().bodies[b];
     for (int v = 0; v < next->bodies[b].vertex_count; ++v)
       origins.push_back(earlier.first_vertex +
                         (&earlier == &before ? cut_origins[static_cast<std::size_t>(v)] : v));

@@ -1,4 +1,4 @@
-#include "muslin/cache/vtk_file.hpp"
+#include "muslin/io/vtk_file.hpp"
 
 #include <array>
 #include <charconv>
@@ -119,16 +119,16 @@ void write_vtu(const fs::path& path, const VtkGrid& grid) {
   out.commit();
 }
 
-void write_vti(const fs::path& path, const DistanceField& field) {
+void write_vti(const fs::path& path, const VtkImage& image) {
   Appendix appendix;
-  const Grid& grid = field.grid;
-  const std::string extent =
-      fmt::format("0 {} 0 {} 0 {}", grid.samples.x() - 1, grid.samples.y() - 1, grid.samples.z() - 1);
+  const Vec3i last = image.samples - Vec3i::Ones();
+  const std::string extent = fmt::format("0 {} 0 {} 0 {}", last.x(), last.y(), last.z());
   std::string head = opening("ImageData");
   head += fmt::format("<ImageData WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\">\n", extent,
-                      grid.origin.x(), grid.origin.y(), grid.origin.z(), grid.width, grid.width, grid.width);
-  head += fmt::format("<Piece Extent=\"{}\">\n<PointData Scalars=\"distance\">\n", extent);
-  head += appendix.element("distance", 1, field.values);
+                      image.origin.x(), image.origin.y(), image.origin.z(), image.width, image.width,
+                      image.width);
+  head += fmt::format("<Piece Extent=\"{}\">\n<PointData Scalars=\"{}\">\n", extent, image.name);
+  head += appendix.element(image.name, 1, image.values);
   head += "</PointData>\n</Piece>\n</ImageData>\n";
   WholeFile out(path);
   out.append(head);

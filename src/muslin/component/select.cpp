@@ -1,4 +1,4 @@
-#include "muslin/scene/select.hpp"
+#include "muslin/component/select.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ std::vector<Shape> shapes_of(const Selection& where, double spacing) {
   return shapes;
 }
 
-const MeshGroup& find_group(const Body& body, const Selection& where, const std::string& what) {
+const MeshGroup& find_group(const Component& body, const Selection& where, const std::string& what) {
   std::vector<std::string> names;
   for (const MeshGroup& group : body.mesh.groups) {
     if (group.name == *where.group) return group;
@@ -72,36 +72,15 @@ const MeshGroup& find_group(const Body& body, const Selection& where, const std:
               name_advice(*where.group, names));
 }
 
-/// Points of the group no farther apart than half a voxel width: its vertices, and samples of its faces.
-std::vector<Vec3> group_points(const Mesh& mesh, const MeshGroup& group, double width) {
-  std::vector<Vec3> points;
-  for (const int v : group.vertices) points.push_back(mesh.positions[static_cast<std::size_t>(v)]);
-  std::vector<std::uint8_t> member(mesh.face_count(), 0);
-  for (const int f : group.faces) member[static_cast<std::size_t>(f)] = 1;
-  const Triangulation cut = triangulate(mesh);
-  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
-    if (!member[static_cast<std::size_t>(cut.faces[t])]) continue;
-    const Vec3& a = mesh.positions[static_cast<std::size_t>(cut.triangles[t][0])];
-    const Vec3 u = mesh.positions[static_cast<std::size_t>(cut.triangles[t][1])] - a;
-    const Vec3 v = mesh.positions[static_cast<std::size_t>(cut.triangles[t][2])] - a;
-    const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
-    const int pieces = static_cast<int>(std::clamp(std::ceil(longest / (width / 2)), 1.0, 2000.0));
-    for (int i = 0; i <= pieces; ++i) {
-      for (int j = 0; i + j <= pieces; ++j) points.push_back(a + u * i / pieces + v * j / pieces);
-    }
-  }
-  return points;
-}
-
 class Selector {
  public:
-  Selector(const Body& body, const Selection& where, const std::string& what)
+  Selector(const Component& body, const Selection& where, const std::string& what)
       : body_(body),
         where_(where),
         what_(what),
         shapes_(shapes_of(where, body.spacing())),
         slack_(tolerance * body.spacing()),
-        kept_(body.has_lattice() ? body.lattice.vertex_count() : body.mesh.vertex_count(), 1) {}
+        kept_(body.selectable_count(), 1) {}
 
   std::vector<int> select() {
     if (where_.group) keep_group();
@@ -122,35 +101,12 @@ class Selector {
   }
 
  private:
-  Vec3 position(std::size_t v) const {
-    return body_.has_lattice() ? body_.lattice.rest_position(v) : body_.mesh.positions[v];
-  }
+  Vec3 position(std::size_t v) const { return body_.selectable(v); }
 
   void keep_group() {
     const MeshGroup& group = find_group(body_, where_, what_);
-    if (!body_.has_lattice()) {
-      keep_vertices_of(group);
-      return;
-    }
-    const std::vector<Vec3> points = group_points(body_.mesh, group, body_.lattice.width);
-    const Embedding carriers = embed(body_.lattice, points);
-    std::fill(kept_.begin(), kept_.end(), 0);
-    for (std::size_t p = 0; p < carriers.size(); ++p) {
-      for (std::size_t s = 0; s < 8; ++s) {
-        if (std::abs(carriers.weights[p][s]) < tolerance) continue;
-        kept_[static_cast<std::size_t>(carriers.vertices[p][s])] = 1;
-      }
-    }
-    if (points.empty()) refuse_empty(group);
-  }
-
-  void keep_vertices_of(const MeshGroup& group) {
-    std::fill(kept_.begin(), kept_.end(), 0);
-    for (const int v : group.vertices) kept_[static_cast<std::size_t>(v)] = 1;
-    for (const int f : group.faces) {
-      for (const int v : body_.mesh.face(static_cast<std::size_t>(f))) kept_[static_cast<std::size_t>(v)] = 1;
-    }
-    if (group.vertices.empty() && group.faces.empty()) refuse_empty(group);
+    kept_ = body_.in_group(group);
+    if (std::find(kept_.begin(), kept_.end(), 1) == kept_.end()) refuse_empty(group);
   }
 
   [[noreturn]] void refuse_empty(const MeshGroup& group) const {
@@ -200,7 +156,7 @@ class Selector {
                             least.distance));
   }
 
-  const Body& body_;
+  const Component& body_;
   const Selection& where_;
   const std::string& what_;
   std::vector<Shape> shapes_;
@@ -210,7 +166,7 @@ class Selector {
 
 }  // namespace
 
-std::vector<int> select_vertices(const Body& body, const Selection& where, const std::string& what) {
+std::vector<int> select_vertices(const Component& body, const Selection& where, const std::string& what) {
   return Selector(body, where, what).select();
 }
 

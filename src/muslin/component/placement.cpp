@@ -1,4 +1,4 @@
-#include "muslin/scene/placement.hpp"
+#include "muslin/component/placement.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -3,6 +3,7 @@
 // VTK File Formats, docs.vtk.org.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -11,7 +12,6 @@
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
-#include "muslin/field/signed_distance.hpp"
 
 namespace muslin {
 
@@ -39,9 +39,18 @@ struct VtkGrid {
   void add_voxel(const std::array<int, 8>& corners);
 };
 
+/// A scalar sampled at the corners of a grid of cubes.
+struct VtkImage {
+  Vec3 origin = Vec3::Zero();     ///< of the first sample [m]
+  double width = 1;               ///< between samples [m]
+  Vec3i samples = Vec3i::Zero();  ///< along x, y, z
+  std::string name;               ///< of the scalar
+  std::vector<float> values;      ///< #samples, x fastest
+};
+
 /// Errors: file.
 void write_vtu(const std::filesystem::path& path, const VtkGrid& grid);
-void write_vti(const std::filesystem::path& path, const DistanceField& field);
+void write_vti(const std::filesystem::path& path, const VtkImage& image);
 /// `steps`: time [s] and file name of each, relative to the .pvd.
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& steps);
 

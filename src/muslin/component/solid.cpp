@@ -1,4 +1,4 @@
-#include "muslin/scene/solid.hpp"
+#include "muslin/component/solid.hpp"
 
 #include <algorithm>
 #include <cmath>

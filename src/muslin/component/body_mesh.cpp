@@ -1,0 +1,56 @@
+#include "muslin/component/body_mesh.hpp"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/component/placement.hpp"
+#include "muslin/core/hash.hpp"
+
+namespace muslin {
+
+Error placed_in(const Place& place, const std::string& file, const Error& error) {
+  std::string where = file;
+  if (error.place().line > 0) where += fmt::format(":{}", error.place().line);
+  if (error.place().line > 0 && error.place().column > 0) where += fmt::format(":{}", error.place().column);
+  return {error.kind(), place, where + ": " + error.problem(), error.remedy()};
+}
+
+void warn_of_body(const ComponentInputs& inputs, const std::string& body, const std::string& sentence) {
+  inputs.warnings.push_back(fmt::format("body {}: {}", body, sentence));
+}
+
+void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, Component& component) {
+  component.name = settings.name;
+  inputs.progress.at(0.0, "mesh");
+  const std::string file = inputs.files.resolve(settings.mesh).string();
+  at_place(settings.mesh_place, file, [&] {
+    MeshFile read = inputs.files.mesh(settings.mesh);
+    if (!read.note.empty()) warn_of_body(inputs, settings.name, read.note);
+    component.mesh = std::move(read.mesh);
+    const auto place = placement(settings.translate, settings.rotate, settings.scale);
+    for (Vec3& x : component.mesh.positions) x = place * x;
+    require_usable(component.mesh, file);
+    component.report = inspect(component.mesh);
+    for (const std::string& warning : component.report.warnings) warn_of_body(inputs, settings.name, warning);
+  });
+}
+
+std::uint64_t settings_hash(const BodySettings& settings, std::uint64_t seed) {
+  const Material& m = settings.material;
+  const std::array<double, 8> numbers = {m.density,
+                                         m.edge_modulus,
+                                         m.face_diagonal_modulus,
+                                         m.body_diagonal_modulus,
+                                         m.volume_modulus,
+                                         m.mass_damping,
+                                         m.stiffness_damping,
+                                         static_cast<double>(settings.boundary_springs)};
+  const std::uint64_t hash = hash_bytes(numbers.data(), sizeof numbers, seed);
+  if (!m.youngs_modulus) return hash;
+  const std::array<double, 2> solid = {*m.youngs_modulus, m.poisson};
+  return hash_bytes(solid.data(), sizeof solid, hash);
+}
+
+}  // namespace muslin

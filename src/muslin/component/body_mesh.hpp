@@ -1,0 +1,36 @@
+// Reads the mesh of a [[body]], and gives errors and warnings their place in the scene.
+#pragma once
+
+#include <string>
+
+#include "muslin/component/body_settings.hpp"
+#include "muslin/component/component.hpp"
+#include "muslin/core/error.hpp"
+
+namespace muslin {
+
+/// Returns the error with a place in the scene, its own place in `file` being part of the message.
+Error placed_in(const Place& place, const std::string& file, const Error& error);
+
+/// Calls build(); its errors, but for an interruption, get the place in the scene and the mesh file.
+template <class Build>
+auto at_place(const Place& place, const std::string& file, const Build& build) -> decltype(build()) {
+  try {
+    return build();
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    throw placed_in(place, file, error);
+  }
+}
+
+/// Appends a sentence about a body to the warnings.
+void warn_of_body(const ComponentInputs& inputs, const std::string& body, const std::string& sentence);
+
+/// Fills in name, mesh and report of a component, the mesh placed in the world. Errors: input and file, with
+/// the place in the scene and the mesh file.
+void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, Component& component);
+
+/// Continues a hash by the numbers of the settings that a saved state must fit.
+std::uint64_t settings_hash(const BodySettings& settings, std::uint64_t seed);
+
+}  // namespace muslin

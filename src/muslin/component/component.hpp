@@ -1,0 +1,184 @@
+// Component is the unit that a model is made of: a lattice, a shell, a rigid body, a kinematic mesh, or what
+// a program adds. It brings its degrees of freedom and masses, potentials and loads, surface map, constraints
+// and statistics. Contact, solver, cache and views work on what components offer; none of them asks what kind
+// a component is. CONTRIBUTING.md tells how to add a kind.
+//
+// Vertices are counted within the component, from 0, unless a comment says otherwise. A component is built
+// once by its ComponentSource, and immutable and shared from then on.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "muslin/component/component_source.hpp"
+#include "muslin/component/contact_part.hpp"
+#include "muslin/component/selection.hpp"
+#include "muslin/component/terms.hpp"
+#include "muslin/constraint/prescribed.hpp"
+#include "muslin/core/progress.hpp"
+#include "muslin/core/vectors.hpp"
+#include "muslin/geometry/inspect.hpp"
+#include "muslin/geometry/mesh.hpp"
+#include "muslin/lattice/embedding.hpp"
+#include "muslin/potential/state.hpp"
+#include "muslin/solver/solver.hpp"
+
+namespace muslin {
+
+struct BodyStatistics {
+  std::int64_t vertices = 0, voxels = 0, tetrahedra = 0;
+  std::array<std::int64_t, 3> springs{};   ///< by SpringKind: edge, face diagonal, body diagonal
+  double mass = 0;                         ///< [kg]
+  double coverage = 1;                     ///< share of the mesh's area inside kept voxels
+  double contour_distance = 0;             ///< largest distance of the rest contour from the solid [m]
+  std::int64_t triangles = 0, hinges = 0;  ///< of a mesh that is its own degrees of freedom, or a collider's
+  /// Largest stable step of symplectic_euler at rest [s]; infinity without stiffness.
+  double stable_step = std::numeric_limits<double>::infinity();
+};
+
+/// A point of a component.
+struct AttachedPoint {
+  Embedding point;      ///< one point
+  std::string warning;  ///< if it is not where it was asked for; a sentence without subject, empty if none
+};
+
+/// Vertices that a force acts on.
+struct LoadedVertices {
+  std::vector<int> vertices;
+  std::vector<double> shares;  ///< #vertices, of the force on each; empty: 1
+};
+
+/// Points besides the skin that a run caches in NAME.POINTS.pc2, and a file that connects them.
+struct CachedPoints {
+  std::string name;       ///< such as "contour"
+  std::string extension;  ///< of the file NAME.POINTS.EXTENSION, such as "obj"
+  std::function<void(const std::filesystem::path&)> write_rest;  ///< writes that file
+  const Embedding* embedding = nullptr;                          ///< null: the vertices themselves
+};
+
+/// How views show a component.
+struct Appearance {
+  std::optional<Vec3> colour = std::nullopt;  ///< sRGB 0…1; none: that of its place in the list
+  std::string shape = "";                     ///< of a collider, such as "plane"; empty: it is none
+  bool unbounded = false;                     ///< the mesh is a patch of something without bounds
+};
+
+class Component {
+ public:
+  std::string name;
+  Mesh mesh;           ///< the user's mesh, placed in the world; the skin's polygons, UVs and rest positions
+  MeshReport report;   ///< of mesh
+  bool sheet = false;  ///< thin: the surface has two sides, no inside
+  Embedding skin;      ///< of mesh.positions
+  int first_vertex = 0;  ///< its vertices are first_vertex … first_vertex + vertex_count − 1 of the state
+  int vertex_count = 0;
+  BodyStatistics statistics;
+  /// Over its vertices; their names follow the component's. Potentials are added to the solver's in order.
+  std::vector<PotentialTerm> potentials;
+  std::vector<LoadTerm> loads;
+
+  Component() = default;
+  Component(const Component&) = delete;
+  Component& operator=(const Component&) = delete;
+  virtual ~Component();
+
+  /// Returns the name of its kind in listings and files: no decision depends on it.
+  virtual std::string kind() const = 0;
+
+  // Degrees of freedom.
+
+  /// Returns the position of a vertex at the start [m].
+  virtual Vec3 rest_position(std::size_t v) const = 0;
+  /// Returns #vertices [kg]; 0 of prescribed vertices.
+  virtual std::vector<double> masses() const = 0;
+  /// Returns #vertices, at the start [m/s]. Default: at rest.
+  virtual std::vector<Vec3> velocities() const;
+  /// Returns the scripted motion of all of its vertices, with `first` 0; null if forces move it.
+  virtual const Prescribed* motion() const { return nullptr; }
+  bool is_prescribed() const { return motion() != nullptr; }
+  /// False for a body that moves rigidly.
+  virtual bool deforms() const { return true; }
+  /// True if forces deform it.
+  bool is_soft() const { return deforms() && !is_prescribed(); }
+  /// Returns the typical distance of neighbouring vertices, of a rigid body that of its mesh [m].
+  virtual double spacing() const = 0;
+  /// Returns #vertices labels, equal where terms connect the vertices. Default: one part.
+  virtual std::vector<int> parts() const;
+  /// Returns the step beyond which single precision loses its masses against its stiffness [s].
+  virtual double longest_step() const;
+  /// Changes anchor and prediction of its vertices for a step from `state`; `fixed`: #V of the model, 1 where
+  /// a vertex is held. Default: leaves them.
+  virtual void predict(Integrator integrator, const State& state, std::span<const std::uint8_t> fixed,
+                       StepContext& context) const;
+  /// Returns the largest length of an element over its length at rest, in positions of its vertices.
+  virtual double max_stretch(ConstVectors x) const;
+  /// Returns the largest stretch that its material allows, if there is one.
+  virtual std::optional<double> stretch_limit() const { return std::nullopt; }
+
+  // Selections and points.
+
+  /// True if its vertices are those of its mesh, in their order: J = 1.
+  virtual bool is_mesh() const { return true; }
+  /// True if `where` selects among its vertices; otherwise it selects among those of its mesh, pins hold the
+  /// component as a whole, and forces on points are shared by its vertices.
+  virtual bool selects_vertices() const { return true; }
+  virtual std::size_t selectable_count() const { return mesh.vertex_count(); }
+  /// Returns the position of a point that `where` selects among, at the start [m].
+  virtual Vec3 selectable(std::size_t i) const { return mesh.positions[i]; }
+  /// Returns #selectable flags of those that belong to a group of the mesh.
+  virtual std::vector<std::uint8_t> in_group(const MeshGroup& group) const;
+  /// Returns the vertices that a pin holds, ascending. Errors: as select_vertices.
+  std::vector<int> held_vertices(const Selection& where, const std::string& what) const;
+  /// Returns the vertices moved by a force on each selected point, or by one on the centre of mass if `where`
+  /// is absent and `where` does not select vertices. Errors: as select_vertices.
+  LoadedVertices loaded_vertices(const std::optional<Selection>& where, const std::string& what) const;
+  /// Returns the point of the component at or next to `at`. Default: the nearest of its surface.
+  virtual AttachedPoint attach(const Vec3& at) const;
+
+  // Contact.
+
+  /// Returns its surface; none if it touches nothing. Default: none.
+  virtual std::optional<ContactPart> contact_part() const;
+
+  // Files and views.
+
+  /// Continue a hash by what a saved state must fit: first the shape of all components, then their materials.
+  virtual std::uint64_t shape_hash(std::uint64_t seed) const;
+  virtual std::uint64_t material_hash(std::uint64_t seed) const { return seed; }
+  virtual Appearance appearance() const { return {}; }
+  bool is_collider() const { return !appearance().shape.empty(); }
+  /// Returns what a run caches besides the skin.
+  virtual std::vector<CachedPoints> cached_points() const { return {}; }
+  /// Writes the stages between mesh and simulation into a folder. Default: NAME.skin.obj. Errors: file.
+  virtual void write_stages(const std::filesystem::path& folder, const Progress& progress) const;
+  /// Returns a JSON object for `muslin check --json` and stats.json.
+  virtual std::string description_json() const;
+  /// Returns the same as lines of text.
+  virtual std::string description() const;
+
+ protected:
+  /// Continues a hash by the name, the vertex range and the number of springs.
+  std::uint64_t range_hash(std::uint64_t seed, std::int64_t springs) const;
+};
+
+/// Returns the embedding whose points are the vertices: J = 1. Prepared for the transpose.
+Embedding identity_embedding(std::size_t count);
+
+/// Returns the step below which symplectic Euler is stable [s] for a component whose elements over n vertices
+/// have the given diagonal blocks, already multiplied by n: an element stores ½ k (Σ aᵢ·dᵢ)² ≤ ½ k n Σ
+/// (aᵢ·dᵢ)², so that ω² ≤ n λ(block)/m, and the step is 2/ω.
+double stable_step(std::span<const Mat3> blocks, std::span<const double> masses);
+
+/// Fills in statistics.mass from masses(), in their order.
+void weigh(Component& component);
+
+}  // namespace muslin

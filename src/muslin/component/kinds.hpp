@@ -1,0 +1,14 @@
+// The kinds of components that a scene can name: one row each.
+#pragma once
+
+#include "muslin/component/body_settings.hpp"
+#include "muslin/component/collider/collider_settings.hpp"
+#include "muslin/component/component_source.hpp"
+
+namespace muslin {
+
+/// Return the source of the component that settings describe. Errors: usage, for a model of no kind.
+ComponentSource source_of(const BodySettings& settings);
+ComponentSource source_of(const ColliderSettings& settings);
+
+}  // namespace muslin

@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/component/body_mesh.hpp"
+#include "muslin/component/lattice/lattice_body.hpp"
+#include "muslin/component/solid.hpp"
+#include "muslin/energy/element_energy.hpp"
+#include "muslin/energy/neo_hookean_energy.hpp"
+#include "muslin/energy/spring_damping.hpp"
+#include "muslin/energy/spring_energy.hpp"
+#include "muslin/energy/volume_energy.hpp"
+#include "muslin/field/signed_distance.hpp"
+#include "muslin/geometry/thicken.hpp"
+#include "muslin/potential/mass_damping.hpp"
+
+namespace muslin {
+namespace {
+
+// Above this the run is long and takes several GiB; the user is warned.
+constexpr std::size_t many_voxels = 2'000'000;
+
+Progress part_of(const Progress& whole, double begin, double end) {
+  Progress part;
+  part.cancelled = whole.cancelled;
+  if (whole.report) {
+    part.report = [&whole, begin, end](double fraction, std::string_view stage) {
+      whole.report(begin + fraction * (end - begin), stage);
+    };
+  }
+  return part;
+}
+
+class LatticeBuilder {
+ public:
+  LatticeBuilder(const BodySettings& settings, const ComponentInputs& inputs)
+      : settings_(settings), inputs_(inputs) {
+    body_.settings = settings;
+  }
+
+  std::shared_ptr<Component> build() {
+    read_body_mesh(settings_, inputs_, body_);
+    make_solid();
+    at_place(settings_.place, inputs_.files.resolve(settings_.mesh).string(),
+             [&] { fill(inputs_.progress); });
+    weigh(body_);
+    add_terms();
+    return built_;
+  }
+
+ private:
+  void say(const std::string& sentence) { warn_of_body(inputs_, settings_.name, sentence); }
+
+  void make_solid() {
+    MeshKind kind = kind_of(body_.mesh, body_.report);
+    if (kind == MeshKind::holed_solid && settings_.thickness) kind = MeshKind::sheet;
+    body_.sheet = kind == MeshKind::sheet;
+    if (body_.sheet) {
+      body_.thickness = settings_.thickness.value_or(settings_.lattice.width);
+      body_.solid = thicken(body_.mesh, body_.thickness);
+      if (!settings_.thickness) {
+        say(
+            fmt::format("the mesh is a sheet; its thickness is taken as one voxel width, {} m; set "
+                        "`thickness` to choose it",
+                        body_.thickness));
+      }
+      return;
+    }
+    if (settings_.thickness) say("the mesh is closed, so `thickness` has no effect");
+    if (kind == MeshKind::holed_solid) {
+      say(fmt::format(
+          "the mesh has {} open edges around small holes and is filled as a solid; set `thickness` "
+          "if it is meant as a shell",
+          body_.report.open_edges));
+    }
+    body_.solid = body_.report.volume < 0 ? flipped(body_.mesh) : body_.mesh;
+  }
+
+  void fill(const Progress& progress) {
+    progress.at(0.1, "distance field");
+    const SignedDistance distance(body_.solid);
+    progress.at(0.2, "voxels");
+    body_.lattice = build_lattice(body_.solid, distance, settings_.lattice, part_of(progress, 0.2, 0.7));
+    progress.at(0.7, "springs");
+    const std::vector<double> fill = body_.lattice.fill;
+    body_.lattice.fill = body_.voxel_shares();
+    body_.springs = build_springs(body_.lattice, settings_.bracing);
+    body_.lattice.fill = fill;
+    progress.at(0.8, "skin");
+    body_.skin = embed(body_.lattice, body_.mesh.positions);
+    progress.at(0.9, "contour");
+    const bool one_layer = body_.lattice.extent.minCoeff() == 1;
+    body_.contour = build_contour(body_.lattice, body_.solid, distance,
+                                  one_layer ? ContourMethod::squares : ContourMethod::cubes);
+    body_.vertex_count = static_cast<int>(body_.lattice.vertex_count());
+    count();
+    advise();
+  }
+
+  void count() {
+    BodyStatistics& s = body_.statistics;
+    s.vertices = static_cast<std::int64_t>(body_.lattice.vertex_count());
+    s.voxels = static_cast<std::int64_t>(body_.lattice.voxel_count());
+    s.tetrahedra = 6 * s.voxels;
+    s.springs = body_.springs.count_by_kind;
+    s.coverage = body_.lattice.coverage;
+    s.contour_distance = body_.contour.distance;
+  }
+
+  void advise() {
+    const double width = settings_.lattice.width;
+    if (body_.lattice.coverage < 1 - 1e-6) {
+      say(
+          fmt::format("{:.3g} % of its surface lies outside the voxels; use `voxels = \"cover\"` or a higher "
+                      "`threshold`",
+                      100 * (1 - body_.lattice.coverage)));
+    }
+    if (body_.contour.mesh.face_count() == 0)
+      say("it is too small for its voxels to have a contour; use a smaller `voxel_width`");
+    if (body_.sheet && body_.thickness > 4 * width) {
+      say(
+          fmt::format("the sheet is {:.3g} voxels thick; a larger `voxel_width` or a smaller `thickness` is "
+                      "cheaper",
+                      body_.thickness / width));
+    }
+    if (body_.lattice.voxel_count() > many_voxels) {
+      say(fmt::format("{} voxels take long and several GiB of memory; a larger `voxel_width` takes less",
+                      body_.lattice.voxel_count()));
+    }
+  }
+
+  void add_terms() {
+    const Material& material = settings_.material;
+    const std::array moduli = {material.edge_modulus, material.face_diagonal_modulus,
+                               material.body_diagonal_modulus};
+    Lattice lattice = body_.lattice;
+    lattice.fill = body_.voxel_shares();
+    std::shared_ptr<const Load> damping;
+    if (material.law == LatticeLaw::neo_hookean) {
+      const auto solid = std::make_shared<NeoHookeanEnergy>(
+          lattice, SolidModuli{*material.youngs_modulus, material.poisson}, tetrahedron_pattern(body_.lattice));
+      body_.potentials.push_back({"solid", EnergyRole::elastic, solid});
+      add_blocks(*solid, 4);
+      damping = std::make_shared<ElementDamping>(solid, material.stiffness_damping);
+    } else {
+      const auto springs =
+          std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli, spring_weights());
+      body_.potentials.push_back({"springs", EnergyRole::elastic, springs});
+      add_blocks(*springs, 2);
+      damping = std::make_shared<SpringDamping>(springs, material.stiffness_damping);
+    }
+    if (material.volume_modulus > 0) {
+      const auto volume = std::make_shared<VolumeEnergy>(lattice, material.volume_modulus);
+      body_.potentials.push_back({"volume", EnergyRole::elastic, volume});
+      add_blocks(*volume, 4);
+    }
+    const std::vector<double> masses = body_.masses();
+    if (material.stiffness_damping > 0)
+      body_.loads.push_back({"stiffness damping", EnergyRole::dissipation, damping});
+    if (material.mass_damping != 0) {
+      body_.loads.push_back({"mass damping", EnergyRole::dissipation,
+                             std::make_shared<MassDamping>(material.mass_damping, masses)});
+    }
+    body_.statistics.stable_step = stable_step(blocks_, masses);
+  }
+
+  /// Returns #springs factors of the spring constants; empty if all are 1.
+  std::vector<float> spring_weights() const {
+    if (settings_.boundary_springs == BodySettings::BoundarySprings::shared) return body_.springs.share;
+    if (settings_.mass == BodySettings::Mass::solid) return body_.springs.mean_fill;
+    return {};
+  }
+
+  void add_blocks(const Potential& potential, double vertices_of_element) {
+    std::vector<Mat3> blocks(body_.lattice.vertex_count(), Mat3::Zero());
+    std::vector<Vec3> rest(blocks.size());
+    for (std::size_t v = 0; v < rest.size(); ++v) rest[v] = body_.lattice.rest_position(v);
+    potential.add_diagonal_blocks(rest, blocks);
+    if (blocks_.empty()) blocks_.assign(blocks.size(), Mat3::Zero());
+    for (std::size_t v = 0; v < blocks.size(); ++v) blocks_[v] += vertices_of_element * blocks[v];
+  }
+
+  const BodySettings& settings_;
+  const ComponentInputs& inputs_;
+  std::shared_ptr<LatticeBody> built_ = std::make_shared<LatticeBody>();
+  LatticeBody& body_ = *built_;
+  std::vector<Mat3> blocks_;
+};
+
+}  // namespace
+
+std::shared_ptr<Component> build_lattice_body(const BodySettings& settings, const ComponentInputs& inputs) {
+  return LatticeBuilder(settings, inputs).build();
+}
+
+}  // namespace muslin

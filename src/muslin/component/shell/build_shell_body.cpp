@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/component/body_mesh.hpp"
+#include "muslin/component/placement.hpp"
+#include "muslin/component/shell/shell_body.hpp"
+#include "muslin/energy/element_energy.hpp"
+#include "muslin/energy/hinge_bending.hpp"
+#include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/stretch_limit.hpp"
+#include "muslin/potential/mass_damping.hpp"
+
+namespace muslin {
+namespace {
+
+class ShellBuilder {
+ public:
+  ShellBuilder(const BodySettings& settings, const ComponentInputs& inputs)
+      : settings_(settings), inputs_(inputs), file_(inputs.files.resolve(settings.mesh).string()) {
+    body_.settings = settings;
+  }
+
+  std::shared_ptr<Component> build() {
+    read_body_mesh(settings_, inputs_, body_);
+    const Mesh rest = rest_mesh();
+    at_place(settings_.mesh_place, file_, [&] { make_shell(rest); });
+    weigh(body_);
+    add_terms();
+    return built_;
+  }
+
+ private:
+  void say(const std::string& sentence) { warn_of_body(inputs_, settings_.name, sentence); }
+
+  /// The stress-free shape: the mesh as it was modelled (scaled, not turned), or another of the same
+  /// polygons.
+  Mesh rest_mesh() {
+    if (settings_.rest_mesh.empty()) return body_.mesh;
+    const std::string rest_file = inputs_.files.resolve(settings_.rest_mesh).string();
+    return at_place(settings_.rest_mesh_place, rest_file, [&] {
+      Mesh rest = inputs_.files.mesh(settings_.rest_mesh).mesh;
+      require_usable(rest, rest_file);
+      if (rest.vertex_count() != body_.mesh.vertex_count() || rest.face_offsets != body_.mesh.face_offsets ||
+          rest.face_vertices != body_.mesh.face_vertices) {
+        throw Error(
+            ErrorKind::input,
+            fmt::format("its polygons are not those of {} ({} vertices and {} polygons against {} and {})",
+                        file_, rest.vertex_count(), rest.face_count(), body_.mesh.vertex_count(),
+                        body_.mesh.face_count()),
+            "make the rest mesh by moving the vertices of a copy");
+      }
+      for (Vec3& x : rest.positions) x = settings_.scale.cwiseProduct(x);
+      return rest;
+    });
+  }
+
+  void make_shell(const Mesh& rest) {
+    inputs_.progress.at(0.5, "shell");
+    Weave weave{settings_.warp};
+    if (weave.warp && settings_.rest_mesh.empty()) {
+      // The direction refers to the mesh as modelled.
+      weave.warp = placement(Vec3::Zero(), settings_.rotate, Vec3::Ones()) * *weave.warp;
+    }
+    const bool textured = !body_.mesh.corner_uvs.empty() &&
+                          *std::min_element(body_.mesh.corner_uvs.begin(), body_.mesh.corner_uvs.end()) >= 0;
+    if (!weave.warp && !textured) {
+      int axis;
+      rest.bounds().sizes().maxCoeff(&axis);
+      weave.warp = Vec3::Unit(axis);
+      const ShellMaterial& m = *settings_.material.shell;
+      if (m.membrane_warp != m.membrane_weft || m.bending_warp != m.bending_weft) {
+        say(fmt::format(
+            "the mesh has no texture coordinates; its warp is taken along {}, its longest side; set "
+            "`warp` to choose it",
+            "xyz"[axis]));
+      }
+    }
+    body_.sheet = true;
+    body_.shell = build_shell(body_.mesh, rest.positions, weave);
+    if (body_.shell.odd_faces > 0) {
+      say(fmt::format(
+          "{} triangles stand across the warp, which has no direction there; unwrap the mesh or choose "
+          "another `warp`",
+          body_.shell.odd_faces));
+    }
+    body_.skin = identity_embedding(body_.mesh.vertex_count());
+    body_.vertex_count = static_cast<int>(body_.mesh.vertex_count());
+    BodyStatistics& s = body_.statistics;
+    s.vertices = body_.vertex_count;
+    s.triangles = static_cast<std::int64_t>(body_.shell.triangles.size());
+    s.hinges = static_cast<std::int64_t>(body_.shell.hinges.size());
+  }
+
+  void add_terms() {
+    const ShellMaterial& m = *settings_.material.shell;
+    const auto pattern = block_pattern(body_.shell);
+    const auto membrane = std::make_shared<MembraneEnergy>(
+        body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson}, pattern);
+    add("membrane", membrane);
+    add_blocks(*membrane, 3);
+    // The limit has no stiffness at rest, so that the stable step does not know it.
+    if (settings_.stretch_limit) {
+      const double limit = *settings_.stretch_limit;
+      const double stiffness = stretch_limit_stiffness(std::max(m.membrane_warp, m.membrane_weft),
+                                                       body_.statistics.mass, body_.shell.mean_edge, limit);
+      add("stretch limit", std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness, pattern));
+    }
+    const auto bending = std::make_shared<HingeBending>(
+        body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias}, pattern);
+    add("bending", bending);
+    add_blocks(*bending, 4);
+    if (m.stiffness_damping > 0)
+      add_damping("stiffness damping", std::make_shared<ElementDamping>(membrane, m.stiffness_damping));
+    if (m.bending_damping > 0)
+      add_damping("bending damping", std::make_shared<ElementDamping>(bending, m.bending_damping));
+    const std::vector<double> masses = body_.masses();
+    if (m.mass_damping != 0)
+      add_damping("mass damping", std::make_shared<MassDamping>(m.mass_damping, masses));
+    body_.statistics.stable_step = stable_step(blocks_, masses);
+  }
+
+  void add(const char* name, std::shared_ptr<const Potential> potential) {
+    body_.potentials.push_back({name, EnergyRole::elastic, std::move(potential)});
+  }
+  void add_damping(const char* name, std::shared_ptr<const Load> load) {
+    body_.loads.push_back({name, EnergyRole::dissipation, std::move(load)});
+  }
+
+  void add_blocks(const Potential& potential, double vertices_of_element) {
+    std::vector<Mat3> blocks(body_.mesh.vertex_count(), Mat3::Zero());
+    potential.add_diagonal_blocks(body_.mesh.positions, blocks);
+    if (blocks_.empty()) blocks_.assign(blocks.size(), Mat3::Zero());
+    for (std::size_t v = 0; v < blocks.size(); ++v) blocks_[v] += vertices_of_element * blocks[v];
+  }
+
+  const BodySettings& settings_;
+  const ComponentInputs& inputs_;
+  std::string file_;
+  std::shared_ptr<ShellBody> built_ = std::make_shared<ShellBody>();
+  ShellBody& body_ = *built_;
+  std::vector<Mat3> blocks_;
+};
+
+}  // namespace
+
+std::shared_ptr<Component> build_shell_body(const BodySettings& settings, const ComponentInputs& inputs) {
+  return ShellBuilder(settings, inputs).build();
+}
+
+}  // namespace muslin

@@ -1,0 +1,143 @@
+#include "muslin/component/shell/shell_body.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "muslin/component/body_mesh.hpp"
+#include "muslin/core/disjoint_sets.hpp"
+#include "muslin/core/counted.hpp"
+#include "muslin/core/hash.hpp"
+#include "muslin/geometry/edge_length.hpp"
+#include "muslin/io/mesh_file.hpp"
+#include "muslin/io/vtk_file.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr double thin = 5e-4, thin_share = 0.1;  // default thickness: [m], of the mean edge
+
+/// Returns the triangles with the direction of their warp.
+VtkGrid triangles(const Shell& shell, const Mesh& mesh) {
+  VtkGrid grid;
+  grid.points = flat(ConstVectors(mesh.positions));
+  std::vector<double> warps;
+  for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
+    const Vec3i& v = shell.triangles[t];
+    const std::array<std::int64_t, 3> corners = {v[0], v[1], v[2]};
+    grid.add_cell(VtkCell::triangle, corners.data(), 3);
+    const auto x = [&](int c) { return mesh.positions[static_cast<std::size_t>(v[c])]; };
+    const Mat2& inverse = shell.inverses[t];
+    const Vec3 warp = (x(1) - x(0)) * inverse(0, 0) + (x(2) - x(0)) * inverse(1, 0);
+    warps.insert(warps.end(), warp.data(), warp.data() + 3);
+  }
+  grid.cell_data.push_back({"warp", 3, std::move(warps)});
+  grid.cell_data.push_back({"rest_area", 1, shell.areas});
+  return grid;
+}
+
+}  // namespace
+
+std::vector<double> ShellBody::masses() const {
+  std::vector<double> masses = shell.vertex_areas;
+  for (double& m : masses) m *= settings.material.shell->areal_density;
+  return masses;
+}
+
+std::vector<Vec3> ShellBody::velocities() const {
+  return std::vector<Vec3>(mesh.vertex_count(), settings.velocity);
+}
+
+std::vector<int> ShellBody::parts() const {
+  DisjointSets parts(mesh.vertex_count());
+  for (const Vec3i& t : shell.triangles) {
+    parts.join(t[0], t[1]);
+    parts.join(t[1], t[2]);
+  }
+  return parts.find_all();
+}
+
+std::optional<ContactPart> ShellBody::contact_part() const {
+  if (!settings.contact) return std::nullopt;
+  const Triangulation cut = triangulate(mesh);
+  const ShellMaterial& m = *settings.material.shell;
+  ContactPart part;
+  part.edge = mean_edge(mesh.positions, cut.triangles);
+  part.size = mesh.bounds().sizes().maxCoeff();
+  part.body.self_contact = settings.self_contact;
+  part.body.friction = settings.friction;
+  part.body.radius = settings.shell_thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;
+  part.body.stiffness = contact_stiffness_share * std::sqrt(m.membrane_warp * m.membrane_weft);
+  // A body without stretch resistance still needs contact to carry its weight.
+  if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;
+  part.add_mesh(mesh, cut, skin);
+  return part;
+}
+
+std::uint64_t ShellBody::shape_hash(std::uint64_t seed) const {
+  std::uint64_t hash = range_hash(seed, 0);
+  hash = hash_bytes(shell.triangles.data(), shell.triangles.size() * sizeof(Vec3i), hash);
+  hash = hash_bytes(shell.inverses.data(), shell.inverses.size() * sizeof(Mat2), hash);
+  return hash_bytes(shell.hinges.data(), shell.hinges.size() * sizeof(Hinge), hash);
+}
+
+std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
+  const ShellMaterial& m = *settings.material.shell;
+  return hash_bytes(&m, sizeof m, settings_hash(settings, seed));
+}
+
+void ShellBody::write_stages(const std::filesystem::path& folder, const Progress& /*progress*/) const {
+  write_vtu(folder / (name + ".shell.vtu"), triangles(shell, mesh));
+  write_mesh(folder / (name + ".skin.obj"), mesh);
+}
+
+std::string ShellBody::description_json() const {
+  const BodyStatistics& s = statistics;
+  nlohmann::ordered_json json;
+  json["name"] = name;
+  json["mesh"] = settings.mesh;
+  json["model"] = kind();
+  json["triangles"] = s.triangles;
+  json["hinges"] = s.hinges;
+  json["area"] = shell.area;
+  json["mean_edge"] = shell.mean_edge;
+  if (settings.stretch_limit) json["stretch_limit"] = *settings.stretch_limit;
+  json["warp"] = settings.warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
+  json["material"] = settings.material.name;
+  json["vertices"] = s.vertices;
+  json["voxels"] = s.voxels;
+  json["tetrahedra"] = s.tetrahedra;
+  json["springs"] = {
+      {"edge", s.springs[0]}, {"face_diagonal", s.springs[1]}, {"body_diagonal", s.springs[2]}};
+  json["mass"] = s.mass;
+  json["coverage"] = s.coverage;
+  json["stable_step"] =
+      std::isfinite(s.stable_step) ? nlohmann::ordered_json(s.stable_step) : nlohmann::ordered_json(nullptr);
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string ShellBody::description() const {
+  const BodyStatistics& s = statistics;
+  const ShellMaterial& m = *settings.material.shell;
+  std::string text =
+      fmt::format("body {}: {} ({}, shell)\n", name, settings.mesh, counted(mesh.face_count(), "polygon"));
+  text += fmt::format("  shell       {} vertices, {} triangles, {} hinges, edges of {:.4g} m on average\n",
+                      s.vertices, s.triangles, s.hinges, shell.mean_edge);
+  text += fmt::format("  mass        {:.6g} kg of {}, {:.4g} kg/m² on {:.6g} m²\n", s.mass,
+                      settings.material.name, m.areal_density, shell.area);
+  text += fmt::format(
+      "  stiffness   warp {:.4g}, weft {:.4g}, shear {:.4g} N/m; bending {:.3g}, {:.3g}, bias "
+      "{:.3g} N·m\n",
+      m.membrane_warp, m.membrane_weft, m.membrane_shear, m.bending_warp, m.bending_weft, m.bending_bias);
+  if (settings.stretch_limit)
+    text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *settings.stretch_limit);
+  return text;
+}
+
+const ShellBody* as_shell(const Component& component) { return dynamic_cast<const ShellBody*>(&component); }
+
+}  // namespace muslin

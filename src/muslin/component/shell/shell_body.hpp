@@ -1,0 +1,49 @@
+// ShellBody is a mesh as thin cloth: its vertices are the degrees of freedom, its triangles and the hinges
+// between them carry membrane and bending energy.
+//
+// Contact sees its triangles, thickened by half its thickness: that of the settings, else 0.5 mm, but no more
+// than a tenth of its mean edge. The stiffness of a contact is 0.15 × its mean membrane modulus [N/m].
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "muslin/component/body_settings.hpp"
+#include "muslin/component/component.hpp"
+#include "muslin/shell/shell.hpp"
+
+namespace muslin {
+
+class ShellBody final : public Component {
+ public:
+  BodySettings settings;  ///< with numbers of a shell in `material`
+  Shell shell;
+
+  std::string kind() const override { return "shell"; }
+  Vec3 rest_position(std::size_t v) const override { return mesh.positions[v]; }
+  std::vector<double> masses() const override;
+  std::vector<Vec3> velocities() const override;
+  double spacing() const override { return shell.mean_edge; }
+  std::vector<int> parts() const override;
+  double max_stretch(ConstVectors x) const override { return muslin::max_stretch(shell, x); }
+  std::optional<double> stretch_limit() const override { return settings.stretch_limit; }
+
+  std::optional<ContactPart> contact_part() const override;
+
+  std::uint64_t shape_hash(std::uint64_t seed) const override;
+  std::uint64_t material_hash(std::uint64_t seed) const override;
+  Appearance appearance() const override { return {settings.colour}; }
+  void write_stages(const std::filesystem::path& folder, const Progress& progress) const override;
+  std::string description_json() const override;
+  std::string description() const override;
+};
+
+/// Builds a body of BodyModel::shell. Errors: input and file, with the place in the scene and the mesh file.
+std::shared_ptr<Component> build_shell_body(const BodySettings& settings, const ComponentInputs& inputs);
+
+/// Returns the component as a shell, null if it is of another kind: for what concerns shells alone.
+const ShellBody* as_shell(const Component& component);
+
+}  // namespace muslin

@@ -1,0 +1,32 @@
+// Potentials and loads with their names and their roles in the energy balance.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "muslin/potential/potential.hpp"
+
+namespace muslin {
+
+/// Role of a potential in the energy balance.
+enum class EnergyRole {
+  elastic,      ///< stored in the material
+  potential,    ///< stored in a fixed field (gravity)
+  work,         ///< done on the bodies from outside (point forces, wind)
+  dissipation,  ///< lost (damping)
+};
+
+/// A potential of the vertices of one component, or of all vertices of a model.
+struct PotentialTerm {
+  std::string name;
+  EnergyRole role = EnergyRole::elastic;
+  std::shared_ptr<const Potential> potential;
+};
+/// The same of a load.
+struct LoadTerm {
+  std::string name;
+  EnergyRole role = EnergyRole::work;
+  std::shared_ptr<const Load> load;
+};
+
+}  // namespace muslin
