@@ -68,8 +68,9 @@ Referee::Referee(std::shared_ptr<const Model> model) : model_(std::move(model)) 
     const Eigen::Isometry3d start =
         body.is_prescribed() ? body.motion()->motion.at(0) : Eigen::Isometry3d::Identity();
     const auto anchor = [&](const Vec3& given) {
-      const AffineFrame& frame = dynamic_cast<const AffineCollider&>(body).frame;
-      return Anchor{static_cast<std::size_t>(body.first_vertex), frame.weights(start * given)};
+      const auto weights = body.attach(start * given).point.weights.front();
+      return Anchor{static_cast<std::size_t>(body.first_vertex),
+                    {weights[0], weights[1], weights[2], weights[3]}};
     };
     using Shape = ColliderSettings::Shape;
     if (settings.shape == Shape::plane) {

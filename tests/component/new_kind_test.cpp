@@ -164,16 +164,17 @@ class Net final : public Component {
 Scene scene_with_net() {
   Scene scene = parse_scene(
       "title = 'net'\n[time]\nduration = 0.5\n"
-      "[[collider]]\nname = 'ball'\nshape = 'sphere'\ncenter = [0.2, -0.2, 0.2]\nradius = 0.15\n"
+      "[[collider]]\nname = 'ball'\nshape = 'sphere'\ncenter = [0.2, -0.2, 0.2]\nradius = 0.15\ndensity = 1\n"
       "[[force]]\nname = 'gravity'\ntype = 'gravity'\n[[force]]\nname = 'breeze'\ntype = 'wind'\nvelocity = "
       "[1, 0, 0]\n",
       "scene.toml");
+  scene.colliders[0].density.reset();  // in a file, something must be free to move
   scene.components.push_back(
       {"net", [](const ComponentInputs&) { return std::make_shared<Net>("net", 8, 0.4); }});
   PinSettings pin;
   pin.name = "corner";
   pin.body = "net";
-  pin.where.nearest = {Vec3(0, 0, 0)};
+  pin.where.nearest = {Vec3(0.4, 0, 0.4)};
   scene.pins.push_back(pin);
   scene.probes.push_back({"middle", "net", Vec3(0.2, 0, 0.2), {}});
   return scene;
@@ -191,7 +192,7 @@ TEST(NewKind, IsBuiltIntoAModelBesideOthers) {
   EXPECT_EQ(model->vertex_count(), 4u + 81);
   EXPECT_NEAR(net.statistics.mass, 81 * knot_mass, 1e-12);
   ASSERT_EQ(model->pins.size(), 1u);
-  EXPECT_EQ(model->pins[0].vertices, std::vector<int>{4});
+  EXPECT_EQ(model->pins[0].vertices, std::vector<int>{4 + 80});
   std::vector<std::string> names;
   for (const PotentialTerm& term : model->potentials) names.push_back(term.name);
   for (const LoadTerm& term : model->loads) names.push_back(term.name);
@@ -209,7 +210,7 @@ TEST(NewKind, DrapesOverABallWithoutCrossingIt) {
   const std::vector<Vec3>& x = simulation.state().positions;
   EXPECT_TRUE(find_crossings(*model.contact, x).empty());
   EXPECT_EQ(simulation.diagnostics().converged_steps, simulation.diagnostics().steps);
-  EXPECT_EQ(x[4], Vec3::Zero()) << "the pin holds the corner";
+  EXPECT_EQ(x[4 + 80], Vec3(0.4, 0, 0.4)) << "the pin holds the corner";
   const double height = simulation.probe("middle").y();
   EXPECT_LT(height, -0.02);
   EXPECT_GT(height, -0.05 + thread_radius) << "the ball carries the middle";
@@ -269,6 +270,11 @@ TEST(NewKind, IsCachedExportedAndShown) {
   ASSERT_EQ(page.head["bodies"].size(), 2u);
   EXPECT_EQ(page.head["bodies"][1]["name"], "net");
   EXPECT_TRUE(page.head["bodies"][1]["surfaces"].contains("skin"));
+  ASSERT_EQ(reader.selections().pins.size(), 1u);
+  EXPECT_EQ(reader.selections().pins[0].vertices, std::vector<int>{80}) << "counted among knots";
+  EXPECT_EQ(reader.selectable_count(net), 81u);
+  const std::size_t pin = page.head["pins"][0]["track"];
+  EXPECT_EQ(page.tracks[pin].at(reader, 2), std::vector<Vec3f>{Vec3f(0.4f, 0, 0.4f)});
   EXPECT_EQ(draw_start(*model, {}).width, 960);
 
   write_stages(scratch / "stages", *model);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "muslin/cache/run_files.hpp"
@@ -43,8 +44,11 @@ struct BodyTracks {
   Track skin;
   bool collider = false, plane = false;
   std::optional<Track> contour, lattice;  // of lattices only
+  std::optional<Track> vertices;          // of other components that cache their vertices
   Mesh skin_mesh, contour_mesh;
   RunReader::LatticeShape shape;
+
+  const Track& selectable() const { return vertices ? *vertices : lattice ? *lattice : skin; }
 };
 
 bool is_text(const Json& object, const char* key) { return object.contains(key) && object[key].is_string(); }
@@ -133,6 +137,7 @@ RunReader::RunReader(fs::path directory) : impl_(std::make_unique<Impl>()) {
                       body.value("shape", Json()) == "plane",
                       {},
                       {},
+                      {},
                       read_mesh(impl.directory / files.skin_mesh).mesh,
                       {},
                       {}};
@@ -155,11 +160,13 @@ RunReader::RunReader(fs::path directory) : impl_(std::make_unique<Impl>()) {
       fit(*tracks.contour, tracks.contour_mesh.vertex_count(), files.contour_cache);
       fit(*tracks.lattice, tracks.shape.rest_positions.size(), files.lattice_cache);
     }
+    if (is_text(body, "vertices"))
+      tracks.vertices =
+          track(fmt::format("{}.{}.pc2", impl.names.back(), body["vertices"].get<std::string>()));
     impl.bodies.push_back(std::move(tracks));
   }
   std::vector<std::size_t> points;
-  for (const BodyTracks& body : impl.bodies)
-    points.push_back(body.lattice ? body.lattice->cache.points() : body.skin.cache.points());
+  for (const BodyTracks& body : impl.bodies) points.push_back(body.selectable().cache.points());
   impl.selections = read_selections(impl.directory / "selections.json", impl.names, points);
   impl.diagnostics.resize(frames);
   impl.frames = static_cast<int>(frames);
@@ -234,6 +241,13 @@ std::vector<Vec3f> RunReader::points(int body, SurfaceKind surface, int frame) c
 std::vector<Vec3f> RunReader::velocities(int body, SurfaceKind surface, int frame) const {
   impl_->require_frame(frame);
   return impl_->track(body, surface).velocities(frame, impl_->frames, impl_->frame_rate);
+}
+std::size_t RunReader::selectable_count(int body) const {
+  return impl_->body(body).selectable().cache.points();
+}
+std::vector<Vec3f> RunReader::selectable_points(int body, int frame) const {
+  impl_->require_frame(frame);
+  return impl_->body(body).selectable().at(frame);
 }
 const RunReader::LatticeShape& RunReader::lattice(int body) const { return impl_->body(body).shape; }
 std::vector<Vec3f> RunReader::lattice_points(int body, int frame) const {

@@ -73,6 +73,11 @@ class MUSLIN_API RunReader {
   std::vector<Vec3f> lattice_points(int body, int frame) const;
   std::vector<Vec3f> lattice_velocities(int body, int frame) const;
 
+  /// The points that selections refer to: the vertices of the body if they are cached, those of its skin
+  /// otherwise.
+  std::size_t selectable_count(int body) const;
+  std::vector<Vec3f> selectable_points(int body, int frame) const;
+
   /// Returns the vertices of the pins and point forces in the last session of the run.
   const Selections& selections() const;
 

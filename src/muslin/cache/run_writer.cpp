@@ -399,6 +399,8 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
     for (const CachedPoints& points : body.cached_points()) {
       const PointsFiles names = points_files(body.name, points);
       entry[points.name] = {{"mesh", names.mesh}, {"cache", names.cache}};
+      // Readers take the vertices of a lattice without being told.
+      if (!points.embedding && points.name != "lattice") entry["vertices"] = points.name;
     }
     run["bodies"].push_back(entry);
   }

@@ -19,6 +19,14 @@ Json common(const Chosen& chosen, const Model& model) {
   return {{"name", chosen.name}, {"body", model.bodies[static_cast<std::size_t>(chosen.body)].name}};
 }
 
+/// True if a run of the component has its vertices in a cache.
+bool caches_vertices(const Component& component) {
+  const std::vector<CachedPoints> cached = component.cached_points();
+  return component.is_mesh() || std::any_of(cached.begin(), cached.end(), [](const CachedPoints& points) {
+           return points.embedding == nullptr;
+         });
+}
+
 /// Errors: any exception of Json, and std::out_of_range.
 Chosen parsed(const Json& entry, const std::vector<std::string>& bodies,
               const std::vector<std::size_t>& points) {
@@ -43,7 +51,7 @@ Selections selections_of(const Model& model) {
   for (const Pin& pin : model.pins) {
     if (pin.vertices.empty()) continue;
     const Component& body = model.body_of(static_cast<std::size_t>(pin.vertices.front()));
-    if (!body.selects_vertices()) continue;  // held as a whole
+    if (!caches_vertices(body)) continue;  // such as those that carry a rigid body
     Chosen chosen{pin.name, model.bodies.index_of(body), {}, pin.from, pin.until, -1};
     for (const int v : pin.vertices) chosen.vertices.push_back(v - body.first_vertex);
     selections.pins.push_back(std::move(chosen));
@@ -53,6 +61,7 @@ Selections selections_of(const Model& model) {
     if (force.type != ForceSettings::Type::point) continue;
     if (!force.where) continue;
     const Component& body = model.body(force.body);
+    if (body.selects_vertices() != caches_vertices(body)) continue;
     selections.point_forces.push_back({force.name, model.bodies.index_of(body),
                                        select_vertices(body, *force.where, "force " + force.name), force.from,
                                        force.until, static_cast<int>(f)});

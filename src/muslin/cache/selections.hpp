@@ -10,8 +10,8 @@
 
 namespace muslin {
 
-/// The vertices that a `where` of the scene chose, numbered as in the cache of the body's lattice, or of the
-/// skin of a shell.
+/// The points that a `where` of the scene chose, numbered as RunReader::selectable_points are: in the cache
+/// of the vertices of the body, or else of its skin.
 struct Chosen {
   std::string name;
   int body = 0;

@@ -57,7 +57,7 @@ std::vector<int> Component::held_vertices(const Selection& where, const std::str
 
 LoadedVertices Component::loaded_vertices(const std::optional<Selection>& where,
                                           const std::string& what) const {
-  if (selects_vertices()) return {select_vertices(*this, where.value_or(Selection{}), what), {}};
+  if (selects_vertices() && where) return {select_vertices(*this, *where, what), {}};
   LoadedVertices loaded;
   loaded.vertices.resize(static_cast<std::size_t>(vertex_count));
   std::iota(loaded.vertices.begin(), loaded.vertices.end(), 0);

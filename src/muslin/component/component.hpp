@@ -62,7 +62,8 @@ struct CachedPoints {
   std::string name;       ///< such as "contour"
   std::string extension;  ///< of the file NAME.POINTS.EXTENSION, such as "obj"
   std::function<void(const std::filesystem::path&)> write_rest;  ///< writes that file
-  const Embedding* embedding = nullptr;                          ///< null: the vertices themselves
+  /// From the vertices to these points; null: the vertices themselves, which selections then refer to.
+  const Embedding* embedding = nullptr;
 };
 
 /// How views show a component.
@@ -138,8 +139,8 @@ class Component {
   virtual std::vector<std::uint8_t> in_group(const MeshGroup& group) const;
   /// Returns the vertices that a pin holds, ascending. Errors: as select_vertices.
   std::vector<int> held_vertices(const Selection& where, const std::string& what) const;
-  /// Returns the vertices moved by a force on each selected point, or by one on the centre of mass if `where`
-  /// is absent and `where` does not select vertices. Errors: as select_vertices.
+  /// Returns the vertices that a force on each selected point acts on, all in equal shares if `where` is
+  /// absent. Errors: as select_vertices.
   LoadedVertices loaded_vertices(const std::optional<Selection>& where, const std::string& what) const;
   /// Returns the point of the component at or next to `at`. Default: the nearest of its surface.
   virtual AttachedPoint attach(const Vec3& at) const;

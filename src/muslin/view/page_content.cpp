@@ -110,9 +110,8 @@ class Gatherer {
         add_surface(body, "contour", contour,
                     add_track(PageTrack::Source::contour, b, contour.vertex_count(), nullptr));
       const LatticeOutside outside = outside_of(run_.lattice(b));
-      add_surface(
-          body, "lattice", outside.mesh,
-          add_track(PageTrack::Source::lattice, b, run_.lattice(b).rest_positions.size(), &outside.vertices));
+      add_surface(body, "lattice", outside.mesh,
+                  add_track(PageTrack::Source::selectable, b, run_.selectable_count(b), &outside.vertices));
     }
     content_.head["bodies"].push_back(std::move(body));
   }
@@ -122,10 +121,7 @@ class Gatherer {
     std::vector<int> vertices;
     const std::size_t stride = (chosen.vertices.size() + max_pinned_points - 1) / max_pinned_points;
     for (std::size_t i = 0; i < chosen.vertices.size(); i += stride) vertices.push_back(chosen.vertices[i]);
-    const bool lattice = run_.has_lattice(chosen.body);
-    const std::size_t cached = lattice ? run_.lattice(chosen.body).rest_positions.size()
-                                       : run_.mesh(chosen.body, SurfaceKind::skin).vertex_count();
-    return add_track(lattice ? PageTrack::Source::lattice : PageTrack::Source::skin, chosen.body, cached,
+    return add_track(PageTrack::Source::selectable, chosen.body, run_.selectable_count(chosen.body),
                      &vertices);
   }
 
@@ -237,8 +233,8 @@ class Gatherer {
 
 std::vector<Vec3f> PageTrack::at(const RunReader& run, int frame) const {
   std::vector<Vec3f> points =
-      source == Source::lattice
-          ? run.lattice_points(body, frame)
+      source == Source::selectable
+          ? run.selectable_points(body, frame)
           : run.points(body, source == Source::skin ? SurfaceKind::skin : SurfaceKind::contour, frame);
   if (all) return points;
   std::vector<Vec3f> chosen;

@@ -14,7 +14,7 @@ namespace muslin {
 
 /// Moving points: all or some of one of the run's caches.
 struct PageTrack {
-  enum class Source { skin, contour, lattice } source = Source::skin;
+  enum class Source { skin, contour, selectable } source = Source::skin;
   int body = 0;
   bool all = true;
   std::vector<int> picked;  ///< otherwise: the selected points of the cache
