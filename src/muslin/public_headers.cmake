@@ -11,6 +11,7 @@ set(MUSLIN_PUBLIC_HEADERS
     constraint/pin.hpp
     constraint/prescribed.hpp
     core/error.hpp
+    core/float4.hpp
     core/output_file.hpp
     core/parallel.hpp
     core/progress.hpp
@@ -30,6 +31,8 @@ set(MUSLIN_PUBLIC_HEADERS
     material/material.hpp
     material/shell_material.hpp
     muslin.hpp
+    potential/hessian_sink.hpp
+    potential/history.hpp
     potential/potential.hpp
     potential/state.hpp
     potential/step_guard.hpp
