@@ -67,7 +67,7 @@ struct Key {
 /// Returns the key's value in words, for messages: "a number above 0 [m]".
 std::string described(const Key& key);
 
-/// The file a text names. Errors: input.
+/// Throws Error(input) if the value of the key cannot name a file.
 void require_path(const std::string& path, const Key& key, const TomlTable& table);
 
 }  // namespace muslin::schema
