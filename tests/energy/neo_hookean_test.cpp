@@ -50,8 +50,9 @@ TEST(NeoHookean, UniformStretchHasTheEnergyOfTheLawWhateverTheTetrahedron) {
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   Mat3 f;
   f << 1.4, 0.2, 0, -0.1, 0.8, 0.3, 0.1, 0, 1.1;
-  const double j = f.determinant(), lambda = mu + lame;
-  const double expected = mu / 2 * (f.squaredNorm() - 3) - mu * (j - 1) + lambda / 2 * (j - 1) * (j - 1);
+  const double j = f.determinant(), ic = f.squaredNorm(), m = 4.0 / 3 * mu, lambda = lame + 5.0 / 6 * mu;
+  const double expected =
+      m / 2 * (ic - 3 - std::log((ic + 1) / 4)) - 0.75 * m * (j - 1) + lambda / 2 * (j - 1) * (j - 1);
   EXPECT_NEAR(block.density(f), expected, 1e-10 * expected);
   EXPECT_NEAR(block.density(turn * f), expected, 1e-10 * expected);
 }

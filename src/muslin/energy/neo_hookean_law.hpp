@@ -1,18 +1,19 @@
 // NeoHookeanLaw is a compressible Neo-Hookean solid,
 //
-//   ψ = μ/2 (I_C − 3) − μ (J − 1) + λ/2 (J − 1)²   [J/m³],   I_C = tr FᵀF,  J = det F,
+//   ψ = μ/2 (I_C − 3) − μ/2 ln((I_C + 1)/4) + λ/2 (J − 1)² − 3/4 μ (J − 1)   [J/m³],
 //
-// the stable form of Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation (2018), without its last term,
-// which only matters for elements shrunk to a point. ψ is a polynomial of F: unlike with ln J, a flat or
-// inverted element has a finite energy and is pushed back, so that no step needs a limit. With
+// I_C = tr FᵀF, J = det F: the stable form of Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation
+// (2018), less a constant. ψ is smooth and finite for every F, also of flat and inverted elements, and
+// nothing but the rest shape is a minimum: without the logarithm, an element shrunk to a point would stay so.
+// Hence no step needs a limit. With
 //
-//   μ = E / (2 (1 + ν)),   λ = μ / (1 − 2ν)
+//   μ = 4/3 G,   λ = L + 5/6 G,   G = E / (2 (1 + ν)),   L = 2 G ν / (1 − 2ν)
 //
-// small strains have Young's modulus E and Poisson's ratio ν: λ is Lamé's plus μ, as −μ (J − 1) takes μ away
-// again.
+// small strains have Young's modulus E and Poisson's ratio ν.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "muslin/core/vector_code.hpp"
@@ -31,15 +32,19 @@ struct NeoHookeanLaw {
       {"poisson", "", -1, 0.5, true, "Contraction across over stretch along."},
   }};
   static Constants constants(double youngs_modulus, double poisson) {
-    const double mu = youngs_modulus / (2 * (1 + poisson));
-    return {mu, mu / (1 - 2 * poisson)};
+    const double shear = youngs_modulus / (2 * (1 + poisson)), lame = 2 * shear * poisson / (1 - 2 * poisson);
+    return {4.0 / 3 * shear, lame + 5.0 / 6 * shear};
   }
 
   MUSLIN_INLINE static double energy(const Constants& c, double ic, double j) {
-    return 0.5 * c.mu * (ic - 3) + (j - 1) * (0.5 * c.lambda * (j - 1) - c.mu);
+    return 0.5 * c.mu * (ic - 3 - std::log(0.25 * (ic + 1))) +
+           (j - 1) * (0.5 * c.lambda * (j - 1) - 0.75 * c.mu);
   }
-  MUSLIN_INLINE static double shear(const Constants& c) { return c.mu; }
-  MUSLIN_INLINE static double slope(const Constants& c, double j) { return c.lambda * (j - 1) - c.mu; }
+  MUSLIN_INLINE static double shear(const Constants& c, double ic) { return c.mu * ic / (ic + 1); }
+  MUSLIN_INLINE static double growth(const Constants& c, double ic) {
+    return 2 * c.mu / ((ic + 1) * (ic + 1));
+  }
+  MUSLIN_INLINE static double slope(const Constants& c, double j) { return c.lambda * (j - 1) - 0.75 * c.mu; }
   MUSLIN_INLINE static double curvature(const Constants& c, double) { return c.lambda; }
 };
 

@@ -66,7 +66,7 @@ MUSLIN_INLINE void rotate_axes(int p, int q, LaneMatrix& a, LaneMatrix& v) {
 /// Eigenvectors of the symmetric a as columns of v, eigenvalues on its diagonal, by a fixed number of
 /// rotations.
 MUSLIN_INLINE void symmetric_eigen(LaneMatrix& a, LaneMatrix& v) {
-  constexpr int sweeps = 5;
+  constexpr int sweeps = 4;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       for (int l = 0; l < element_lanes; ++l) v[i][j][l] = i == j ? 1 : 0;
@@ -79,18 +79,30 @@ MUSLIN_INLINE void symmetric_eigen(LaneMatrix& a, LaneMatrix& v) {
 
 /// Replaces a symmetric matrix by its positive semidefinite part.
 MUSLIN_INLINE void cut_negative(LaneMatrix& a) {
+  // Most often no lane has a negative eigenvalue: Sylvester's criterion.
+  double worst[element_lanes];
+  for (int l = 0; l < element_lanes; ++l) {
+    const double minor = a[0][0][l] * a[1][1][l] - a[0][1][l] * a[0][1][l], all = determinant(a, l);
+    const double least = a[0][0][l] < minor ? a[0][0][l] : minor;
+    worst[l] = least < all ? least : all;
+  }
+  bool positive = true;
+  for (int l = 0; l < element_lanes; ++l) positive = positive && worst[l] > 0;
+  if (positive) return;
   LaneMatrix d, v;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       for (int l = 0; l < element_lanes; ++l) d[i][j][l] = a[i][j][l];
   symmetric_eigen(d, v);
   for (int i = 0; i < 3; ++i)
-    for (int l = 0; l < element_lanes; ++l) d[i][i][l] = d[i][i][l] > 0 ? d[i][i][l] : 0;
+    for (int l = 0; l < element_lanes; ++l) d[i][i][l] = d[i][i][l] < 0 ? -d[i][i][l] : 0;
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j)
-      for (int l = 0; l < element_lanes; ++l)
-        a[i][j][l] = a[j][i][l] = v[i][0][l] * d[0][0][l] * v[j][0][l] +
-                                  v[i][1][l] * d[1][1][l] * v[j][1][l] + v[i][2][l] * d[2][2][l] * v[j][2][l];
+      for (int l = 0; l < element_lanes; ++l) {
+        const double lacking = v[i][0][l] * d[0][0][l] * v[j][0][l] + v[i][1][l] * d[1][1][l] * v[j][1][l] +
+                               v[i][2][l] * d[2][2][l] * v[j][2][l];
+        a[i][j][l] = a[j][i][l] = a[i][j][l] + lacking;
+      }
 }
 
 /// f = u diag(sigma) vᵀ with rotations u and v, sigma₁ ≥ sigma₂ ≥ |sigma₃|, which has the sign of det f. Also

@@ -1,21 +1,26 @@
 // TetrahedronStencil is a tetrahedron with the deformation gradient F, 3 by 3. Its measure is (I_C, J), the
 // trace of FᵀF and the determinant, for isotropic laws of the form
 //
-//   ψ = μ/2 (I_C − 3) + f(J)   [J/m³].
+//   ψ = a(I_C) + f(J)   [J/m³].
 //
-// Laws give `energy` ψ, `shear` μ, `slope` f'(J) and `curvature` f''(J). With g = ∂J/∂F, the cofactors,
+// Laws give `energy` ψ, `shear` 2 a', `growth` 4 a'' ≥ 0, `slope` f' and `curvature` f''. With g = ∂J/∂F, the
+// cofactors,
 //
-//   P = μ F + f' g,   dP = μ dF + f'' (g : dF) g + f' dg.
+//   P = 2 a' F + f' g,   dP = 2 a' dF + 4 a'' (F : dF) F + f'' (g : dF) g + f' dg.
 //
 // The projected stiffness has the eigenvalues of this in closed form. With F = U Σ Vᵀ, σ₃ of the sign of J,
 // and dF̂ = Uᵀ dF V, the Hessian falls into one 3 by 3 block of the stretches and three 2 by 2 blocks of
 // (dF̂_ij, dF̂_ji),
 //
-//   A_ii = μ + f'' g_i²,  A_ij = f'' g_i g_j + f' σ_k      g_i = σ_j σ_k
-//   μ − f' σ_k  for dF̂_ij + dF̂_ji,   μ + f' σ_k  for dF̂_ij − dF̂_ji
+//   A_ij = 2 a' δ_ij + 4 a'' σ_i σ_j + f'' g_i g_j + f' σ_k (i ≠ j),   g_i = σ_j σ_k
+//   2 a' − f' σ_k  for dF̂_ij + dF̂_ji,   2 a' + f' σ_k  for dF̂_ij − dF̂_ji
 //
 // (Smith, de Goes, Kim, Analytic Eigensystems for Isotropic Distortion Energies, 2019); negative ones become
-// zero. The material stiffness resists changes of FᵀF only.
+// zero.
+//
+// The material stiffness resists changes of FᵀF only. With M = dF gᵀ it is
+//
+//   4 a'' (F : dF)² + b (tr M)² + m |sym M|²,   m = −2 f'/J ≥ 0,  b = f'' + f'/J ≥ −m/3.
 #pragma once
 
 #include <array>
@@ -68,14 +73,16 @@ class TetrahedronStencil {
 
   template <class Law>
   struct Stiff {
-    bool exact = false;
-    // Exact: F and the multiples of dF, (g : dF) g and dg.
+    Stiffness kind = Stiffness::projected;
+    // F and the multiples of dF, (F : dF) F, (g : dF) g and dg.
     Matrix f;
-    double shear[element_lanes], curvature[element_lanes], slope[element_lanes];
-    // Else: U, the corners' shape gradients along V, and the stiffness in principal axes times the volume: of
-    // dF̂_ii dF̂_jj, of dF̂_ij² and of dF̂_ij dF̂_ji.
-    Matrix u;
+    double shear[element_lanes], growth[element_lanes], curvature[element_lanes], slope[element_lanes];
+    // Material: the corners' gradients of J and of I_C/2, and b and m times the volume.
+    // Projected: U, the corners' shape gradients along V, and the stiffness in principal axes times the
+    // volume: of dF̂_ii dF̂_jj, of dF̂_ij² and of dF̂_ij dF̂_ji.
     double shape[4][3][element_lanes];
+    double half[4][3][element_lanes], bulk[element_lanes], stretching[element_lanes];
+    Matrix u;
     Matrix stretch, single, mixed;
   };
 
@@ -100,8 +107,9 @@ class TetrahedronStencil {
     double energy[element_lanes], shear[element_lanes], slope[element_lanes];
     for (int l = 0; l < element_lanes; ++l) {
       const double j = determinant(f, l);
-      energy[l] = rest.volume[l] * Law::energy(law[l], square(f, l), j);
-      shear[l] = rest.volume[l] * Law::shear(law[l]);
+      const double ic = square(f, l);
+      energy[l] = rest.volume[l] * Law::energy(law[l], ic, j);
+      shear[l] = rest.volume[l] * Law::shear(law[l], ic);
       slope[l] = rest.volume[l] * Law::slope(law[l], j);
     }
     for (int l = 0; l < element_lanes; ++l) w[l] = energy[l];
@@ -120,27 +128,30 @@ class TetrahedronStencil {
     deformation(rest, x, f);
     for (int l = 0; l < element_lanes; ++l) {
       const double j = determinant(f, l);
-      out.shear[l] = rest.volume[l] * Law::shear(law[l]);
+      const double ic = square(f, l);
+      out.shear[l] = rest.volume[l] * Law::shear(law[l], ic);
+      out.growth[l] = rest.volume[l] * Law::growth(law[l], ic);
       out.curvature[l] = rest.volume[l] * Law::curvature(law[l], j);
       out.slope[l] = rest.volume[l] * Law::slope(law[l], j);
     }
-    out.exact = kind == Stiffness::exact;
-    if (out.exact) return true;
+    out.kind = kind;
+    if (kind == Stiffness::exact) return true;
+    double of_corner[4][3][element_lanes];
+    shape_gradients(rest, of_corner);
+    if (kind == Stiffness::material) {
+      resist_strain(of_corner, out);
+      return true;
+    }
     Matrix v;
     double sigma[3][element_lanes];
     principal_axes(f, out.u, sigma, v);
-    double of_corner[4][3][element_lanes];
-    shape_gradients(rest, of_corner);
     for (int c = 0; c < 4; ++c)
       for (int i = 0; i < 3; ++i)
         for (int l = 0; l < element_lanes; ++l)
           out.shape[c][i][l] = v[0][i][l] * of_corner[c][0][l] + v[1][i][l] * of_corner[c][1][l] +
                                v[2][i][l] * of_corner[c][2][l];
-    if (kind == Stiffness::material) {
-      material_in_axes(sigma, out.slope, out.curvature, out.stretch, out.single, out.mixed);
-    } else {
-      projected_in_axes(sigma, out.shear, out.slope, out.curvature, out.stretch, out.single, out.mixed);
-    }
+    projected_in_axes(sigma, out.shear, out.growth, out.slope, out.curvature, out.stretch, out.single,
+                      out.mixed);
     cut_negative(out.stretch);
     return true;
   }
@@ -148,24 +159,30 @@ class TetrahedronStencil {
   template <class Law>
   MUSLIN_VECTOR_CODE static void multiply(const LawLanes<Law>&, const TetrahedronRest& rest,
                                           const Stiff<Law>& stiff, const Batch<4>& p, Batch<4>& y) {
-    if (stiff.exact) {
+    if (stiff.kind == Stiffness::exact) {
       Matrix d, g, dg;
       deformation(rest, p, d);
       cofactors(stiff.f, g);
       change_of_cofactors(stiff.f, d, dg);
-      double along[element_lanes];
+      double along[element_lanes], grown[element_lanes];
       for (int l = 0; l < element_lanes; ++l) {
-        double sum = 0;
+        double sum = 0, half = 0;
         for (int k = 0; k < 3; ++k)
-          for (int c = 0; c < 3; ++c) sum += g[k][c][l] * d[k][c][l];
+          for (int c = 0; c < 3; ++c) {
+            sum += g[k][c][l] * d[k][c][l];
+            half += stiff.f[k][c][l] * d[k][c][l];
+          }
         along[l] = stiff.curvature[l] * sum;
+        grown[l] = stiff.growth[l] * half;
       }
       for (int k = 0; k < 3; ++k)
         for (int c = 0; c < 3; ++c)
           for (int l = 0; l < element_lanes; ++l)
-            d[k][c][l] = stiff.shear[l] * d[k][c][l] + along[l] * g[k][c][l] + stiff.slope[l] * dg[k][c][l];
+            d[k][c][l] = stiff.shear[l] * d[k][c][l] + grown[l] * stiff.f[k][c][l] + along[l] * g[k][c][l] +
+                         stiff.slope[l] * dg[k][c][l];
       return to_corners(rest, d, y);
     }
+    if (stiff.kind == Stiffness::material) return multiply_strain(stiff, p, y);
     Matrix d, s;  // dF̂ and the stress it makes
     for (int i = 0; i < 3; ++i) {
       double turned[4][element_lanes];
@@ -201,6 +218,11 @@ class TetrahedronStencil {
   template <class Law>
   static void add_corner_block(const LawLanes<Law>&, const TetrahedronRest&, const Stiff<Law>& stiff, int l,
                                int corner, Mat3& block) {
+    if (stiff.kind == Stiffness::material) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) block(i, j) += strain_entry(stiff, corner, corner, i, j, l);
+      return;
+    }
     Mat3 inner, u;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
@@ -220,6 +242,14 @@ class TetrahedronStencil {
     int n = 0;
     for (int c = 0; c < 4; ++c) {
       for (int d = c + 1; d < 4; ++d, ++n) {
+        if (stiff.kind == Stiffness::material) {
+          for (int r = 0; r < 3; ++r)
+            for (int k = 0; k < 3; ++k)
+              for (int l = 0; l < element_lanes; ++l)
+                pair[n][r][k][l] = static_cast<float>(scale * strain_entry(stiff, c, d, r, k, l));
+          add_to_diagonal(pair[n], diagonal[c], diagonal[d]);
+          continue;
+        }
         Matrix inner, half;
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j)
@@ -236,12 +266,7 @@ class TetrahedronStencil {
                                  stiff.u[r][2][l] * half[2][k][l];
               pair[n][r][k][l] = static_cast<float>(sum);
             }
-        for (int r = 0; r < 3; ++r)
-          for (int k = 0; k < 3; ++k)
-            for (int l = 0; l < element_lanes; ++l) {
-              diagonal[c][r][k][l] -= pair[n][r][k][l];
-              diagonal[d][r][k][l] -= pair[n][k][r][l];
-            }
+        add_to_diagonal(pair[n], diagonal[c], diagonal[d]);
       }
     }
     for (int l = 0; l < count; ++l) {
@@ -318,53 +343,89 @@ class TetrahedronStencil {
            s.single[i][q][l] * s.shape[c][q][l] * s.shape[d][q][l];
   }
 
-  /// Signed and away from zero, as a divisor.
-  MUSLIN_INLINE static double divisor(double sigma) {
-    constexpr double least = 0.1;
-    return sigma < 0 ? (sigma > -least ? -least : sigma) : (sigma < least ? least : sigma);
+  using FloatMatrix = float[3][3][element_lanes];
+  MUSLIN_INLINE static void add_to_diagonal(const FloatMatrix& pair, FloatMatrix& row, FloatMatrix& column) {
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < element_lanes; ++l) {
+          row[r][k][l] -= pair[r][k][l];
+          column[r][k][l] -= pair[k][r][l];
+        }
   }
+
+  template <class Law>
+  MUSLIN_INLINE static void resist_strain(const double (&of_corner)[4][3][element_lanes], Stiff<Law>& out) {
+    constexpr double least = 0.01;  // of |J|, as a divisor
+    Matrix g;
+    cofactors(out.f, g);
+    for (int c = 0; c < 4; ++c)
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < element_lanes; ++l) {
+          out.shape[c][k][l] = g[k][0][l] * of_corner[c][0][l] + g[k][1][l] * of_corner[c][1][l] +
+                               g[k][2][l] * of_corner[c][2][l];
+          out.half[c][k][l] = out.f[k][0][l] * of_corner[c][0][l] + out.f[k][1][l] * of_corner[c][1][l] +
+                              out.f[k][2][l] * of_corner[c][2][l];
+        }
+    for (int l = 0; l < element_lanes; ++l) {
+      const double j = determinant(out.f, l);
+      const double divisor = j < 0 ? (j > -least ? -least : j) : (j < least ? least : j);
+      const double m = -2 * out.slope[l] / divisor, b = out.curvature[l] + out.slope[l] / divisor;
+      out.stretching[l] = m > 0 ? m : 0;
+      out.bulk[l] = b > -out.stretching[l] / 3 ? b : -out.stretching[l] / 3;
+    }
+  }
+  /// Forces on the corners, with M = Σ p_d h_dᵀ and h the gradients of J.
+  template <class Law>
+  MUSLIN_INLINE static void multiply_strain(const Stiff<Law>& s, const Batch<4>& p, Batch<4>& y) {
+    Matrix m;
+    double grown[element_lanes] = {};
+    for (int c = 0; c < 4; ++c)
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < element_lanes; ++l) grown[l] += s.growth[l] * s.half[c][k][l] * p[c][k][l];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        for (int l = 0; l < element_lanes; ++l)
+          m[i][j][l] = p[0][i][l] * s.shape[0][j][l] + p[1][i][l] * s.shape[1][j][l] +
+                       p[2][i][l] * s.shape[2][j][l] + p[3][i][l] * s.shape[3][j][l];
+    for (int c = 0; c < 4; ++c)
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < element_lanes; ++l) {
+          const double trace = m[0][0][l] + m[1][1][l] + m[2][2][l];
+          double sum = 0;
+          for (int j = 0; j < 3; ++j) sum += (m[k][j][l] + m[j][k][l]) * s.shape[c][j][l];
+          y[c][k][l] =
+              grown[l] * s.half[c][k][l] + s.bulk[l] * trace * s.shape[c][k][l] + 0.5 * s.stretching[l] * sum;
+        }
+  }
+  /// Entry (i, j) of the material block of corners c and d.
+  template <class Law>
+  MUSLIN_INLINE static double strain_entry(const Stiff<Law>& s, int c, int d, int i, int j, int l) {
+    const auto &hc = s.shape[c], &hd = s.shape[d];
+    const double even = i == j ? hc[0][l] * hd[0][l] + hc[1][l] * hd[1][l] + hc[2][l] * hd[2][l] : 0;
+    return s.growth[l] * s.half[c][i][l] * s.half[d][j][l] + s.bulk[l] * hc[i][l] * hd[j][l] +
+           0.5 * s.stretching[l] * (even + hd[i][l] * hc[j][l]);
+  }
+
   MUSLIN_INLINE static void projected_in_axes(const double (&sigma)[3][element_lanes], const double* shear,
-                                              const double* slope, const double* curvature, Matrix& stretch,
-                                              Matrix& single, Matrix& mixed) {
+                                              const double* growth, const double* slope,
+                                              const double* curvature, Matrix& stretch, Matrix& single,
+                                              Matrix& mixed) {
     for (int i = 0; i < 3; ++i) {
       for (int j = i; j < 3; ++j) {
         const int k = 3 - i - j, p = i == 0 ? 1 : 0, q = i == 2 ? 1 : 2;
         for (int l = 0; l < element_lanes; ++l) {
           const double gi = sigma[p][l] * sigma[q][l];
           if (i == j) {
-            stretch[i][i][l] = shear[l] + curvature[l] * gi * gi;
+            stretch[i][i][l] = shear[l] + growth[l] * sigma[i][l] * sigma[i][l] + curvature[l] * gi * gi;
             continue;
           }
           const double gj = sigma[i][l] * sigma[k][l], turn = slope[l] * sigma[k][l];
-          stretch[i][j][l] = stretch[j][i][l] = curvature[l] * gi * gj + turn;
+          stretch[i][j][l] = stretch[j][i][l] =
+              growth[l] * sigma[i][l] * sigma[j][l] + curvature[l] * gi * gj + turn;
           const double sum = shear[l] - turn > 0 ? shear[l] - turn : 0;
           const double difference = shear[l] + turn > 0 ? shear[l] + turn : 0;
           single[i][j][l] = single[j][i][l] = 0.5 * (sum + difference);
           mixed[i][j][l] = mixed[j][i][l] = 0.5 * (sum - difference);
-        }
-      }
-    }
-  }
-  /// With S_i = μ + f' J/σ_i² the second Piola-Kirchhoff stress along an axis: σ_i σ_j ∂S_i/∂E_jj for the
-  /// stretches, and (S_i − S_j)/(σ_i² − σ_j²) = −f' J/(σ_i σ_j)² for σ_i dF̂_ij + σ_j dF̂_ji.
-  MUSLIN_INLINE static void material_in_axes(const double (&sigma)[3][element_lanes], const double* slope,
-                                             const double* curvature, Matrix& stretch, Matrix& single,
-                                             Matrix& mixed) {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = i; j < 3; ++j) {
-        const int k = 3 - i - j, p = i == 0 ? 1 : 0, q = i == 2 ? 1 : 2;
-        for (int l = 0; l < element_lanes; ++l) {
-          const double gi = sigma[p][l] * sigma[q][l], si = divisor(sigma[i][l]), sj = divisor(sigma[j][l]);
-          if (i == j) {
-            stretch[i][i][l] = curvature[l] * gi * gi - slope[l] * gi / si;
-            continue;
-          }
-          const double gj = sigma[i][l] * sigma[k][l];
-          stretch[i][j][l] = stretch[j][i][l] = curvature[l] * gi * gj + slope[l] * sigma[k][l];
-          const double shear = -slope[l] * sigma[k][l] / (si * sj), g = shear > 0 ? shear : 0;
-          single[i][j][l] = g * sigma[i][l] * sigma[i][l];
-          single[j][i][l] = g * sigma[j][l] * sigma[j][l];
-          mixed[i][j][l] = mixed[j][i][l] = g * sigma[i][l] * sigma[j][l];
         }
       }
     }
