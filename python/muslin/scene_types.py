@@ -14,6 +14,15 @@ Vector = Union[Sequence[float], npt.NDArray[np.floating[Any]]]
 Points = Union[Sequence[Vector], npt.NDArray[np.floating[Any]]]
 Path = Union[str, os.PathLike[str], Mesh]
 
+KeyframesOfANumber = TypedDict(
+    "KeyframesOfANumber",
+    {
+        "time": Required[float],  # after that of the one before [s]
+        "value": Required[float],  # the number at that time
+    },
+    total=False,
+)
+
 WhereLine = TypedDict(
     "WhereLine",
     {
@@ -39,6 +48,14 @@ WhereSphere = TypedDict(
     {
         "center": Required[Vector],  # its centre [m]
         "radius": Required[float],  # its radius [m]
+    },
+    total=False,
+)
+
+ANumberOverTime = TypedDict(
+    "ANumberOverTime",
+    {
+        "keyframes": Required[Sequence["KeyframesOfANumber"]],  # a list of tables, linear between them, constant before the first and after the last
     },
     total=False,
 )
@@ -116,8 +133,7 @@ MaterialOfALattice = TypedDict(
     "MaterialOfALattice",
     {
         "base": Optional[str],  # a material by name or path; the other keys change it
-        "youngs_modulus": Optional[float],  # in place of the three moduli: that of a large block along its axes [N/m²]
-        "shear_modulus": Optional[float],  # only with `youngs_modulus` [N/m²]
+        "shear_modulus": Optional[float],  # of springs, only with `youngs_modulus` [N/m²]
         "density": Optional[float],  # mass per volume [kg/m³]
         "edge_modulus": Optional[float],  # of springs along voxel edges; a spring's constant is modulus × voxel width [N/m²]
         "face_diagonal_modulus": Optional[float],  # of springs along face diagonals [N/m²]
@@ -125,6 +141,9 @@ MaterialOfALattice = TypedDict(
         "volume_modulus": Optional[float],  # stiffness against a change of volume of each voxel; 0 is off [N/m²]
         "mass_damping": Optional[float],  # Rayleigh's α: slows all motion, like a viscous fluid [1/s]
         "stiffness_damping": Optional[float],  # Rayleigh's β: slows stretching only [s]
+        "law": Optional[Literal["springs", "neo_hookean"]],  # `neo_hookean`: a solid of tetrahedra in place of springs, with a stated E and ν
+        "youngs_modulus": Optional[float],  # of the solid; in a scene with springs, that of a large block along its axes, in place of the three moduli [N/m²]
+        "poisson": Optional[float],  # Poisson's ratio of the solid
     },
     total=False,
 )
@@ -135,6 +154,20 @@ Probe = TypedDict(
         "name": Optional[str],  # name in `probes.csv`
         "body": Optional[str],  # must be given if there are several
         "at": Required[Vector],  # a point of the body or collider at the start, which moves with it [m]
+    },
+    total=False,
+)
+
+Pressure = TypedDict(
+    "Pressure",
+    {
+        "name": Optional[str],  # name in messages
+        "body": Optional[str],  # a shell that is closed, or nearly: flat lids close its holes
+        "pressure": Required[Union[float, "ANumberOverTime"]],  # excess over the outside, constant or `{ keyframes = [{ time = …, value = … }, …] }`; of a gas: its excess while the surface encloses the volume at rest [Pa]
+        "gas": Optional[bool],  # `true`: a fixed amount of gas at a constant temperature, whose pressure falls as the volume grows
+        "atmosphere": Optional[float],  # pressure outside, for a gas [Pa]
+        "from": Optional[float],  # time when it begins to act [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
     },
     total=False,
 )
@@ -397,6 +430,7 @@ Scene = TypedDict(
         "contact": Optional["Contact"],  # contact distance and friction
         "pin": Optional[Sequence["Pin"]],  # prescribed vertices
         "force": Optional[Sequence["Force"]],  # gravity, point forces, wind; without a gravity force there is no gravity
+        "pressure": Optional[Sequence["Pressure"]],  # pressures inside of shells
         "probe": Optional[Sequence["Probe"]],  # points whose path is written to `probes.csv`
     },
     total=False,

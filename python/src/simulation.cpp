@@ -9,9 +9,11 @@
 #include "simulation_object.hpp"
 #include <fmt/format.h>
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -154,6 +156,17 @@ void bind_simulation(nb::module_& m) {
           "whole\n"
           "step.")
       .def("step", &Self::step, "One step of the solver; the last of a frame finishes it.")
+      .def(
+          "cut",
+          [](Self& self, const std::vector<std::array<int, 2>>& edges,
+             const std::optional<std::string>& body) {
+            self.cut(find_body(*self.model(), body).name, edges);
+          },
+          "edges"_a, nb::kw_only(), "body"_a = nb::none(),
+          "Opens edges of a shell, pairs of vertices of its mesh from 0, and goes on with what became of "
+          "it.\n"
+          "Faces that no other edge joins part; new vertices come last. Motion stays, the change of energy\n"
+          "counts as work, and `model` is another one. Forces in Python are dropped: add them again.")
       .def(
           "add_force",
           [](Self& self, const Force& force, const std::string& name,

@@ -75,6 +75,15 @@ void SimulationObject::set_velocities(nb::handle velocities) {
   if (simulation_.steps_done() == 0) history_.back() = simulation_.diagnostics();
 }
 
+void SimulationObject::cut(const std::string& body, const std::vector<std::array<int, 2>>& edges) {
+  Work work(*this);
+  simulation_.cut(body, edges);
+  model_ = simulation_.shared_model();
+  forces_.clear();
+  changed();
+  if (simulation_.steps_done() == 0) history_.back() = simulation_.diagnostics();
+}
+
 void SimulationObject::add_force(nb::object function, const std::string& name,
                                  const std::optional<std::string>& body) {
   Work work(*this);

@@ -2,6 +2,7 @@
 // and a guard against use from two threads at once.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +45,8 @@ class SimulationObject {
   void restored();
   void set_positions(nb::handle positions);
   void set_velocities(nb::handle velocities);
+  /// Forces in Python are forgotten.
+  void cut(const std::string& body, const std::vector<std::array<int, 2>>& edges);
   /// `function` is called as F(x, v, t) with the vertices of one body, or of all.
   void add_force(nb::object function, const std::string& name, const std::optional<std::string>& body);
 

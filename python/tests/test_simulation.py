@@ -236,3 +236,21 @@ def test_thread_count_changes_no_bit(flag):
     assert results[0] == results[1] == results[2]
     with pytest.raises(muslin.UsageError):
         muslin.set_thread_count(-1)
+
+
+def test_cut_sheet_goes_on_as_two():
+    simulation = muslin.Simulation(muslin.make_scene(shell_tables()))
+    simulation.advance()
+    before, momentum = simulation.positions, simulation.diagnostics.momentum
+    row = 3 * 7  # the vertices in the middle of 6 by 6 squares
+    simulation.cut([(row + i, row + i + 1) for i in range(6)])
+    assert len(simulation.positions) == len(before) + 7
+    assert np.array_equal(simulation.positions[:49], before)
+    assert np.allclose(simulation.diagnostics.momentum, momentum, rtol=1e-12)
+    assert simulation.model.bodies[0].mesh.positions.shape == (56, 3)
+    height = simulation.positions[:7, 1].mean()
+    for _ in range(10):
+        simulation.advance()
+    assert simulation.positions[:7, 1].mean() < height - 0.5  # the lower half falls
+    with pytest.raises(muslin.UsageError, match="share no edge"):
+        simulation.cut([(0, 8)], body="cloth")

@@ -3,6 +3,10 @@
 
 #include "muslin/cache/run_quality.hpp"
 #include "muslin/cache/stages.hpp"
+#include "muslin/component/kinematic/kinematic_body.hpp"
+#include "muslin/component/lattice/lattice_body.hpp"
+#include "muslin/component/rigid/rigid_body.hpp"
+#include "muslin/component/shell/shell_body.hpp"
 #include "muslin/contact/crossings.hpp"
 #include "muslin/contact/intersections.hpp"
 #include "muslin/core/nearest_name.hpp"

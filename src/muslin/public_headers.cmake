@@ -8,10 +8,20 @@ set(MUSLIN_PUBLIC_HEADERS
     cache/run_reader.hpp
     cache/run_writer.hpp
     cache/selections.hpp
+    component/body_settings.hpp
+    component/collider/collider_settings.hpp
+    component/component.hpp
+    component/component_list.hpp
+    component/component_source.hpp
+    component/contact_part.hpp
+    component/scene_files.hpp
+    component/selection.hpp
+    component/terms.hpp
     constraint/pin.hpp
     constraint/prescribed.hpp
+    contact/contact_surface.hpp
+    contact/surface_map.hpp
     core/error.hpp
-    core/float4.hpp
     core/output_file.hpp
     core/parallel.hpp
     core/progress.hpp
@@ -19,9 +29,7 @@ set(MUSLIN_PUBLIC_HEADERS
     field/signed_distance.hpp
     force/force_function.hpp
     force/keyed.hpp
-    geometry/affine_frame.hpp
     geometry/inspect.hpp
-    geometry/mass_properties.hpp
     geometry/mesh.hpp
     geometry/point_sequence.hpp
     io/mesh_file.hpp
@@ -31,19 +39,17 @@ set(MUSLIN_PUBLIC_HEADERS
     material/material.hpp
     material/shell_material.hpp
     muslin.hpp
-    potential/hessian_sink.hpp
     potential/history.hpp
     potential/potential.hpp
     potential/state.hpp
     potential/step_guard.hpp
     scene/model.hpp
+    scene/pressure.hpp
     scene/scene.hpp
     scene/validate.hpp
-    shell/shell.hpp
     simulation/diagnostics.hpp
     simulation/simulated_body.hpp
     simulation/simulation.hpp
     solver/solver.hpp
-    surface/contour.hpp
     topology/topology.hpp
     version.hpp)

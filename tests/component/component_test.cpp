@@ -13,11 +13,11 @@
 
 #include "muslin/component/collider/affine_collider.hpp"
 #include "muslin/component/component_list.hpp"
-#include "muslin/core/disjoint_sets.hpp"
 #include "muslin/component/kinds.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/component/select.hpp"
 #include "muslin/component/shell/shell_body.hpp"
+#include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/shapes.hpp"
 #include "muslin/io/mesh_file.hpp"

@@ -17,6 +17,7 @@
 #include "muslin/cache/run_writer.hpp"
 #include "muslin/cache/stages.hpp"
 #include "muslin/component/component.hpp"
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/io/mesh_file.hpp"

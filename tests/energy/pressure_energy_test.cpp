@@ -142,7 +142,10 @@ TEST(PressureEnergy, BlocksArePositiveAndTheHessianWithoutItsNegativePart) {
 
 TEST(Pressure, FollowsItsTime) {
   const Surface s = ball(4, 0.1);
-  const Pressure load(s.volume(), [](double t) { return 1000 * t; });
+  const Pressure load(s.volume(), [](double, double t) -> std::optional<Gas> {
+    if (t == 0) return std::nullopt;
+    return Gas{1000 * t, 0, 0};
+  });
   StepContext step;
   step.time_end = 0;
   EXPECT_EQ(load.potential(step), nullptr);

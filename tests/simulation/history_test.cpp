@@ -17,7 +17,7 @@ namespace muslin {
 namespace {
 
 constexpr double fold = 1.0, yield = 0.3, rigidity = 1e-2, spacing = 0.1;
-constexpr double let_go = 0.4;  // [s]
+constexpr double let_go = 0.4;   // [s]
 constexpr int held_frames = 19;  // of 1/50 s, the last whole one before
 
 /// Two triangles held at one of them; the other one is folded by a pin until `let_go`.

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/component/component_source.hpp"
 #include "muslin/component/contact_part.hpp"
 #include "muslin/component/selection.hpp"
@@ -73,7 +74,7 @@ struct Appearance {
   bool unbounded = false;                     ///< the mesh is a patch of something without bounds
 };
 
-class Component {
+class MUSLIN_API Component {
  public:
   std::string name;
   Mesh mesh;           ///< the user's mesh, placed in the world; the skin's polygons, UVs and rest positions
@@ -172,14 +173,14 @@ class Component {
 };
 
 /// Returns the embedding whose points are the vertices: J = 1. Prepared for the transpose.
-Embedding identity_embedding(std::size_t count);
+MUSLIN_API Embedding identity_embedding(std::size_t count);
 
 /// Returns the step below which symplectic Euler is stable [s] for a component whose elements over n vertices
 /// have the given diagonal blocks, already multiplied by n: an element stores ½ k (Σ aᵢ·dᵢ)² ≤ ½ k n Σ
 /// (aᵢ·dᵢ)², so that ω² ≤ n λ(block)/m, and the step is 2/ω.
-double stable_step(std::span<const Mat3> blocks, std::span<const double> masses);
+MUSLIN_API double stable_step(std::span<const Mat3> blocks, std::span<const double> masses);
 
 /// Fills in statistics.mass from masses(), in their order.
-void weigh(Component& component);
+MUSLIN_API void weigh(Component& component);
 
 }  // namespace muslin

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/api.hpp"
 #include "muslin/contact/contact_surface.hpp"
 #include "muslin/contact/surface_map.hpp"
 #include "muslin/core/vectors.hpp"
@@ -18,7 +19,7 @@ namespace muslin {
 /// Stiffness of a contact with a deformable body, as a share of the stiffness [N/m] of its material.
 inline constexpr double contact_stiffness_share = 0.15;
 
-struct ContactPart {
+struct MUSLIN_API ContactPart {
   ContactBody body;                        ///< its frame in vertices of the component
   std::vector<SurfaceMap::Entry> entries;  ///< of all points, by rows
   std::vector<int> offsets = {0};          ///< #points + 1, into entries

@@ -128,13 +128,13 @@ void PressureEnergy::linearize(ConstVectors x, HessianSink& into, std::size_t fi
   into.add_rank_one(std::move(term), first);
 }
 
-Pressure::Pressure(std::shared_ptr<const EnclosedVolume> surface, std::function<double(double)> pressure)
-    : none_(std::move(surface), Gas()), pressure_(std::move(pressure)) {}
+Pressure::Pressure(std::shared_ptr<const EnclosedVolume> surface, GasOfStep gas)
+    : none_(std::move(surface), Gas()), gas_(std::move(gas)) {}
 
 std::unique_ptr<Potential> Pressure::potential(const StepContext& step) const {
-  const double pressure = pressure_(step.time_end);
-  if (pressure == 0) return nullptr;
-  return std::unique_ptr<Potential>(new PressureEnergy(none_, Gas{pressure, 0, 0}));
+  const std::optional<Gas> gas = gas_(step.time_begin, step.time_end);
+  if (!gas) return nullptr;
+  return std::unique_ptr<Potential>(new PressureEnergy(none_, *gas));
 }
 
 }  // namespace muslin

@@ -17,6 +17,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "muslin/geometry/enclosed_volume.hpp"
 #include "muslin/potential/potential.hpp"
@@ -57,16 +58,17 @@ class PressureEnergy : public Potential {
   std::shared_ptr<const std::vector<int>> slots_;  // by edge: its block; −1: of a hole
 };
 
-/// An excess pressure given over time.
+/// A gas that changes over time.
 class Pressure : public Load {
  public:
-  /// `pressure` at a time [s] in [Pa].
-  Pressure(std::shared_ptr<const EnclosedVolume> surface, std::function<double(double)> pressure);
+  /// Returns the gas of a step from `begin` to `end` [s]; none: nothing acts.
+  using GasOfStep = std::function<std::optional<Gas>(double begin, double end)>;
+  Pressure(std::shared_ptr<const EnclosedVolume> surface, GasOfStep gas);
   std::unique_ptr<Potential> potential(const StepContext& step) const override;
 
  private:
   PressureEnergy none_;
-  std::function<double(double)> pressure_;
+  GasOfStep gas_;
 };
 
 }  // namespace muslin

@@ -7,7 +7,10 @@
 
 namespace muslin {
 
-Vec3 Keyed::at(double time) const {
+namespace {
+
+template <class Key>
+auto value_at(const std::vector<Key>& keys, double time) -> decltype(Key::value) {
   require(!keys.empty(), "a keyed quantity has no keys", "give at least one");
   const auto next =
       std::upper_bound(keys.begin(), keys.end(), time, [](double t, const Key& key) { return t < key.time; });
@@ -17,6 +20,12 @@ Vec3 Keyed::at(double time) const {
   const Key& b = *next;
   return a.value + (time - a.time) / (b.time - a.time) * (b.value - a.value);
 }
+
+}  // namespace
+
+Vec3 Keyed::at(double time) const { return value_at(keys, time); }
+
+double KeyedNumber::at(double time) const { return value_at(keys, time); }
 
 Vec3 Keyed::integral(double time) const {
   // The value is linear between consecutive nodes, so the trapezoidal rule is exact.

@@ -1,4 +1,4 @@
-// Keyed is a keyframed vector quantity that changes over time.
+// Keyed and KeyedNumber are quantities that keyframes change over time.
 #pragma once
 
 #include <vector>
@@ -19,6 +19,18 @@ struct MUSLIN_API Keyed {
   Vec3 at(double time) const;
   /// ∫₀ᵗ at(s) ds for t ≥ 0, exactly: the displacement due to a keyed velocity.
   Vec3 integral(double time) const;
+};
+
+/// A number in place of a vector.
+struct MUSLIN_API KeyedNumber {
+  struct Key {
+    double time = 0;  ///< [s]
+    double value = 0;
+  };
+  std::vector<Key> keys;  ///< at least one, times ascend strictly
+
+  bool is_constant() const { return keys.size() == 1; }
+  double at(double time) const;
 };
 
 /// The time during which a force acts, and its share of a step.

@@ -10,8 +10,8 @@
 namespace muslin {
 namespace {
 
-constexpr Range modulus{0, 1e12, false};
-constexpr Range damping{0, 1e6, false};
+constexpr Range sheet_modulus{0, 1e12, false};
+constexpr Range sheet_damping{0, 1e6, false};
 
 /// Returns the bias rigidity of an orthotropic plate whose twisting rigidity is the geometric mean of the two
 /// bending ones.
@@ -59,17 +59,17 @@ schema::Table declared() {
                       .means("mass per area"),
                   number("membrane_warp", &ShellMaterial::membrane_warp)
                       .unit("N/m")
-                      .range(modulus)
+                      .range(sheet_modulus)
                       .required_without({"base"})
                       .means("force per width and strain along warp: Young's modulus × thickness"),
                   number("membrane_weft", &ShellMaterial::membrane_weft)
                       .unit("N/m")
-                      .range(modulus)
+                      .range(sheet_modulus)
                       .otherwise("`membrane_warp`")
                       .means("along weft"),
                   number("membrane_shear", &ShellMaterial::membrane_shear)
                       .unit("N/m")
-                      .range(modulus)
+                      .range(sheet_modulus)
                       .otherwise("as in an isotropic sheet")
                       .means("force per width and radian"),
                   number("poisson", &ShellMaterial::poisson)
@@ -78,30 +78,30 @@ schema::Table declared() {
                       .means("geometric mean of the two directions' Poisson's ratios"),
                   number("bending_warp", &ShellMaterial::bending_warp)
                       .unit("N·m")
-                      .range(modulus)
+                      .range(sheet_modulus)
                       .required_without({"base"})
                       .means("moment per width and curvature, warp bent"),
                   number("bending_weft", &ShellMaterial::bending_weft)
                       .unit("N·m")
-                      .range(modulus)
+                      .range(sheet_modulus)
                       .otherwise("`bending_warp`")
                       .means("weft bent"),
                   number("bending_bias", &ShellMaterial::bending_bias)
                       .unit("N·m")
-                      .range(modulus)
+                      .range(sheet_modulus)
                       .otherwise("between the two")
                       .means("bent at 45°; at least (√warp − √weft)²/4"),
                   number("mass_damping", &ShellMaterial::mass_damping)
                       .unit("1/s")
-                      .range(damping)
+                      .range(sheet_damping)
                       .means("Rayleigh's α: slows all motion"),
                   number("stiffness_damping", &ShellMaterial::stiffness_damping)
                       .unit("s")
-                      .range(damping)
+                      .range(sheet_damping)
                       .means("Rayleigh's β of stretch and shear"),
                   number("bending_damping", &ShellMaterial::bending_damping)
                       .unit("s")
-                      .range(damping)
+                      .range(sheet_damping)
                       .otherwise("`stiffness_damping`")
                       .means("Rayleigh's β of bending")});
   table.complete = [](const TomlTable& given, void* settings) {

@@ -141,7 +141,8 @@ void warn(const TomlTable& table, const BodySettings& body, std::vector<std::str
     warnings.push_back(table.title() + ": `threshold` has no effect without `voxels = \"threshold\"`");
   const Material& material = body.material;
   if (shell ? material.shell->membrane_shear == 0
-            : material.face_diagonal_modulus == 0 && material.body_diagonal_modulus == 0) {
+            : material.law == LatticeLaw::springs && material.face_diagonal_modulus == 0 &&
+                  material.body_diagonal_modulus == 0) {
     warnings.push_back(table.title() +
                        (shell ? ": a material without `membrane_shear` does not resist shear"
                               : ": a material without stiffness along diagonals does not resist shear"));

@@ -141,6 +141,7 @@ Model build_model(const Scene& scene, const Progress& progress) {
   for (const Component& component : model.bodies) add_terms(model, component);
   choose_explicit_steps(model);
   build_forces(model);
+  build_pressures(model);
   build_pins(model);
   build_probes(model);
   build_contact(model);

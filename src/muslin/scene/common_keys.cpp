@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "muslin/core/nearest_name.hpp"
 #include "muslin/component/placement.hpp"
+#include "muslin/core/nearest_name.hpp"
 
 namespace muslin {
 namespace {
@@ -67,6 +67,57 @@ const schema::Table& motion_keyframe_table() {
            .otherwise("`[0, 0, 0]`")
            .means("turn about `pivot`: about the x axis, then y, then z")});
   return table;
+}
+
+const schema::Table& keyed_number_table() {
+  static const schema::Table table = [] {
+    const auto keyframe_table = []() -> const schema::Table& {
+      static const schema::Table keyframe = schema::table_of<KeyedNumber::Key>(
+          "keyframes of a number",
+          {schema::number("time", &KeyedNumber::Key::time)
+               .unit("s")
+               .required()
+               .means("after that of the one before"),
+           schema::number("value", &KeyedNumber::Key::value).required().means("the number at that time")});
+      return keyframe;
+    };
+    return schema::table_of<KeyedNumber>(
+        "a number over time",
+        {schema::keyframes("keyframes", &KeyedNumber::keys, +keyframe_table)
+             .required()
+             .means("a list of tables, linear between them, constant before the first and after the last")});
+  }();
+  return table;
+}
+
+void read_keyed_number(const schema::Key& key, const TomlTable& table, KeyedNumber& number) {
+  const TomlValue& value = *table.find(key.name);
+  if (value.type != TomlValue::Type::table) {
+    number.keys = {{0, table.number(key.name, key.unit, key.range)}};
+    return;
+  }
+  const TomlTable over_time =
+      keyed_number_table().open(value, fmt::format("`{}` of {}", key.name, table.title()));
+  keyed_number_table().read(over_time, number);
+  for (const KeyedNumber::Key& keyframe : number.keys)
+    if (!fits(keyframe.value, key.range))
+      throw table.error(key.name, fmt::format("`{}` is {} at {} s", key.name, keyframe.value, keyframe.time),
+                        fmt::format("give {}", schema::described(key)));
+}
+
+void write_keyed_number(const schema::Key& key, const KeyedNumber& number, TomlValue& out) {
+  schema::append(
+      out, key.name,
+      number.is_constant() ? schema::real(number.keys.front().value) : keyed_number_table().write(number));
+}
+
+void check_keyed_number(const schema::Key& key, const KeyedNumber& number, const schema::Subject& subject) {
+  if (number.keys.empty()) throw subject.error(key.name, "it has no value", "give at least one key");
+  keyed_number_table().check(number, subject);
+  for (const KeyedNumber::Key& keyframe : number.keys)
+    if (!fits(keyframe.value, key.range))
+      throw subject.error(key.name, fmt::format("`{}` is {}", key.name, keyframe.value),
+                          fmt::format("give {}", schema::described(key)));
 }
 
 schema::Declaration motion_key() {

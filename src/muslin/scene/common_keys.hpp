@@ -57,6 +57,25 @@ std::vector<schema::Key> window_keys(double S::* from, double S::* until, const 
 /// Throws subject.error(…) unless until > from.
 void check_window(double from, double until, const schema::Subject& subject);
 
+/// A number, or `{ keyframes = [{ time, value }, …] }`: a number over time, linear between the keyframes.
+const schema::Table& keyed_number_table();  ///< of KeyedNumber
+void read_keyed_number(const schema::Key& key, const TomlTable& table, KeyedNumber& number);
+void write_keyed_number(const schema::Key& key, const KeyedNumber& number, TomlValue& out);
+void check_keyed_number(const schema::Key& key, const KeyedNumber& number, const schema::Subject& subject);
+template <class S>
+schema::Declaration keyed_number_key(std::string name, KeyedNumber S::* member, Range range) {
+  schema::Key key = schema::custom<S>(
+      std::move(name), {schema::Type::number, schema::Type::table},
+      [=](const schema::Key& k, const TomlTable& table, S& s) { read_keyed_number(k, table, s.*member); },
+      [=](const schema::Key& k, const S& s, TomlValue& out) { write_keyed_number(k, s.*member, out); });
+  key.range = range;
+  key.table = keyed_number_table;
+  key.check = [=](const schema::Key& k, const void* s, const schema::Subject& subject) {
+    check_keyed_number(k, static_cast<const S*>(s)->*member, subject);
+  };
+  return schema::Declaration(std::move(key));
+}
+
 /// `keyframes` of a motion.
 schema::Declaration motion_key();
 const schema::Table& motion_keyframe_table();  ///< of Motion::Key

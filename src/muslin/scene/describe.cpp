@@ -135,6 +135,7 @@ std::string describe_text(const Model& model, std::span<const Crossing> crossing
     text +=
         fmt::format("pin {}: {}\n", pin.name, counted(pin.vertices.size(), "held vertex", "held vertices"));
   }
+  if (!scene.pressures.empty()) text += counted(scene.pressures.size(), "pressure") + ", ";
   text += counted(scene.forces.size(), "force") + ", " + counted(scene.probes.size(), "probe") + "\n";
   text += fmt::format("{:.6g} s in {} frames, {} by {}", scene.time.duration, scene.time.frames(),
                       steps_text(scene.time), solver_text(scene.solver));

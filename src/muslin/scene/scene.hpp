@@ -22,6 +22,7 @@
 #include "muslin/force/keyed.hpp"
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/io/mesh_file.hpp"
+#include "muslin/scene/pressure.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
@@ -90,6 +91,7 @@ struct Scene {
   ContactSettings contact;
   std::vector<PinSettings> pins;
   std::vector<ForceSettings> forces;
+  std::vector<PressureSettings> pressures;
   std::vector<ProbeSettings> probes;
   /// Components of a program's own, built after those above. Pins, forces and probes may name them.
   std::vector<ComponentSource> components;

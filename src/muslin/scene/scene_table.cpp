@@ -195,6 +195,9 @@ schema::Table declared() {
                 schema::sections("force", &Scene::forces, force_table, finish_force)
                     .may_change_on_resume()
                     .means("gravity, point forces, wind; without a gravity force there is no gravity"),
+                schema::sections("pressure", &Scene::pressures, pressure_table, finish_pressure)
+                    .may_change_on_resume()
+                    .means("pressures inside of shells"),
                 schema::sections("probe", &Scene::probes, probe_table, finish_probe)
                     .may_change_on_resume()
                     .means("points whose path is written to `probes.csv`")});

@@ -56,6 +56,8 @@ void validate(const Scene& scene) {
   scene_table().check(scene, Subject("the scene", {scene.file.string()}));
   const std::vector<std::string> movable = movable_names(scene);
   for (const ForceSettings& force : scene.forces) check_force(scene, force, movable);
+  for (const PressureSettings& pressure : scene.pressures)
+    check_body_name(subject_of("[[pressure]]", pressure), pressure.body, movable);
   for (const PinSettings& pin : scene.pins) check_body_name(subject_of("[[pin]]", pin), pin.body, movable);
   std::vector<std::string> all = movable;  // probes may be on colliders that stand still
   for (const ColliderSettings& collider : scene.colliders) all.push_back(collider.name);

@@ -187,6 +187,7 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 const Model& Simulation::model() const { return *impl_->model; }
+std::shared_ptr<const Model> Simulation::shared_model() const { return impl_->model; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
 const State& Simulation::state() const { return impl_->state.motion; }
 int Simulation::frame() const { return impl_->state.frame; }

@@ -33,6 +33,7 @@ class MUSLIN_API Simulation {
   Simulation& operator=(Simulation&&) noexcept;
 
   const Model& model() const;
+  std::shared_ptr<const Model> shared_model() const;  ///< the same; changes with cut and change_model
   const SimulationOptions& options() const;
   const State& state() const;              ///< how all bodies are and move
   int frame() const;                       ///< the last finished frame

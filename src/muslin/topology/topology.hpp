@@ -63,6 +63,6 @@ struct TopologyChange {
 /// other group gets a new one, numbered from `vertex_count` on. An edge both of whose vertices stay whole
 /// stays closed. Errors: usage, for a pair of vertices that is no edge.
 MUSLIN_API TopologyChange cut(const Topology& topology, std::size_t vertex_count,
-                   std::span<const std::array<int, 2>> edges);
+                              std::span<const std::array<int, 2>> edges);
 
 }  // namespace muslin

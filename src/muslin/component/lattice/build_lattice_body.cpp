@@ -140,8 +140,9 @@ class LatticeBuilder {
     lattice.fill = body_.voxel_shares();
     std::shared_ptr<const Load> damping;
     if (material.law == LatticeLaw::neo_hookean) {
-      const auto solid = std::make_shared<NeoHookeanEnergy>(
-          lattice, SolidModuli{*material.youngs_modulus, material.poisson}, tetrahedron_pattern(body_.lattice));
+      const auto solid =
+          std::make_shared<NeoHookeanEnergy>(lattice, SolidModuli{*material.youngs_modulus, material.poisson},
+                                             tetrahedron_pattern(body_.lattice));
       body_.potentials.push_back({"solid", EnergyRole::elastic, solid});
       add_blocks(*solid, 4);
       damping = std::make_shared<ElementDamping>(solid, material.stiffness_damping);

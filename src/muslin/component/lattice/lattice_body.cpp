@@ -128,8 +128,8 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
       {m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus}, settings.bracing, m.volume_modulus);
   // The springs of a sheet have the stiffness of its thickness, unless every voxel counts full.
   const bool thin = sheet && settings.mass == BodySettings::Mass::solid;
-  part.body.stiffness =
-      contact_stiffness_share * (moduli.youngs + m.youngs_modulus.value_or(0)) * (thin ? std::min(lattice.width, thickness) : lattice.width);
+  part.body.stiffness = contact_stiffness_share * (moduli.youngs + m.youngs_modulus.value_or(0)) *
+                        (thin ? std::min(lattice.width, thickness) : lattice.width);
   // A body without stretch resistance still needs contact to carry its weight.
   if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;
   part.add_mesh(mesh, cut, skin);

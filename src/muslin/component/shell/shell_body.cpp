@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "muslin/component/body_mesh.hpp"
-#include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/counted.hpp"
+#include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/hash.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/io/mesh_file.hpp"
