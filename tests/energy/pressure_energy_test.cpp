@@ -3,8 +3,10 @@
 #include "muslin/energy/pressure_energy.hpp"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
+#include "support/ball_surface.hpp"
 #include "support/linearized_product.hpp"
 #include "support/potential_battery.hpp"
 #include <gtest/gtest.h>
@@ -14,40 +16,11 @@
 namespace muslin {
 namespace {
 
-struct Surface {
-  std::vector<Vec3> x;
-  std::vector<Vec3i> triangles;
-  std::shared_ptr<const EnclosedVolume> volume() const {
-    return std::make_shared<const EnclosedVolume>(triangles, x.size());
-  }
-};
+using test::ball;
+using test::Surface;
 
-/// A ball of `rings` rings and twice as many segments; `open` leaves out the upper cap.
-Surface ball(int rings, double radius, bool open = false, const Vec3& centre = Vec3::Zero()) {
-  Surface s;
-  const int segments = 2 * rings;
-  s.x.push_back(centre - radius * Vec3::UnitY());
-  for (int r = 1; r < rings; ++r) {
-    const double polar = std::numbers::pi * (static_cast<double>(r) / rings - 0.5);
-    for (int k = 0; k < segments; ++k) {
-      const double turn = 2 * std::numbers::pi * k / segments;
-      s.x.push_back(centre + radius * Vec3(std::cos(polar) * std::cos(turn), std::sin(polar),
-                                           -std::cos(polar) * std::sin(turn)));
-    }
-  }
-  const auto at = [&](int r, int k) { return 1 + (r - 1) * segments + k % segments; };
-  for (int k = 0; k < segments; ++k) s.triangles.emplace_back(0, at(1, k + 1), at(1, k));
-  for (int r = 1; r + 1 < rings; ++r) {
-    for (int k = 0; k < segments; ++k) {
-      s.triangles.emplace_back(at(r, k), at(r, k + 1), at(r + 1, k + 1));
-      s.triangles.emplace_back(at(r, k), at(r + 1, k + 1), at(r + 1, k));
-    }
-  }
-  if (open) return s;
-  s.x.push_back(centre + radius * Vec3::UnitY());
-  const int top = static_cast<int>(s.x.size()) - 1;
-  for (int k = 0; k < segments; ++k) s.triangles.emplace_back(at(rings - 1, k), at(rings - 1, k + 1), top);
-  return s;
+std::shared_ptr<const EnclosedVolume> volume_of(const Surface& s) {
+  return std::make_shared<const EnclosedVolume>(s.triangles, s.x.size());
 }
 
 constexpr Gas constant{3000, 0, 0};
@@ -56,28 +29,28 @@ Gas air(double rest_volume) { return {2000, 101325, rest_volume}; }
 
 TEST(EnclosedVolume, IsThatOfABallWhereverItIs) {
   const double exact = 4 * std::numbers::pi / 3 * 0.001;
-  EXPECT_NEAR(ball(60, 0.1).volume()->value(ball(60, 0.1).x) / exact, 1, 5e-3);
+  EXPECT_NEAR(volume_of(ball(60, 0.1))->value(ball(60, 0.1).x) / exact, 1, 5e-3);
   const Surface here = ball(12, 0.1), far = ball(12, 0.1, false, Vec3(1000, -2000, 500));
-  EXPECT_NEAR(far.volume()->value(far.x) / here.volume()->value(here.x), 1, 1e-9);
+  EXPECT_NEAR(volume_of(far)->value(far.x) / volume_of(here)->value(here.x), 1, 1e-9);
 }
 
 TEST(EnclosedVolume, HoleIsClosedByAFlatLid) {
   const Surface open = ball(60, 0.1, true);
-  ASSERT_EQ(open.volume()->holes().size(), 1U);
+  ASSERT_EQ(volume_of(open)->holes().size(), 1U);
   const double exact = 4 * std::numbers::pi / 3 * 0.001;
-  EXPECT_NEAR(open.volume()->value(open.x) / exact, 1, 6e-3);
+  EXPECT_NEAR(volume_of(open)->value(open.x) / exact, 1, 6e-3);
 }
 
 TEST(EnclosedVolume, RefusesFacesThatAreNotOrientedAlike) {
   Surface s = ball(4, 1);
   std::swap(s.triangles[3][0], s.triangles[3][1]);
-  EXPECT_THROW((void)s.volume(), Error);
+  EXPECT_THROW((void)volume_of(s), Error);
 }
 
 TEST(PressureEnergy, PassesTheBatteryClosedAndOpenConstantAndAsAGas) {
   for (const bool open : {false, true}) {
     const Surface s = ball(5, 0.1, open);
-    const auto volume = s.volume();
+    const auto volume = volume_of(s);
     const double rest = volume->value(s.x);
     for (const Gas& gas : {constant, Gas{-500, 0, 0}, air(rest), air(3 * rest), air(200 * rest)}) {
       const PressureEnergy energy(volume, gas);
@@ -92,7 +65,7 @@ TEST(PressureEnergy, ForceOnAFaceIsPressureTimesArea) {
   // The forces on a ball's lower half add up to p π r² downwards.
   const double radius = 0.1, pressure = 3000;
   const Surface s = ball(60, radius);
-  const std::vector<Vec3> g = test::gradient(PressureEnergy(s.volume(), constant), s.x);
+  const std::vector<Vec3> g = test::gradient(PressureEnergy(volume_of(s), constant), s.x);
   Vec3 force = Vec3::Zero();
   for (std::size_t v = 0; v < g.size(); ++v)
     force -= (s.x[v].y() < -1e-9 ? 1 : s.x[v].y() < 1e-9 ? 0.5 : 0) * g[v];
@@ -116,9 +89,9 @@ TEST(PressureEnergy, GasFollowsBoyle) {
 
 TEST(PressureEnergy, BlocksArePositiveAndTheHessianWithoutItsNegativePart) {
   const Surface s = ball(6, 0.1, true);
-  const double rest = s.volume()->value(s.x);
+  const double rest = volume_of(s)->value(s.x);
   for (const Gas& gas : {constant, air(rest)}) {
-    const PressureEnergy energy(s.volume(), gas);
+    const PressureEnergy energy(volume_of(s), gas);
     const std::vector<double> masses(s.x.size(), 1e-9);
     const std::vector<std::uint8_t> fixed(s.x.size(), 0);
     Linearization h;
@@ -142,7 +115,7 @@ TEST(PressureEnergy, BlocksArePositiveAndTheHessianWithoutItsNegativePart) {
 
 TEST(Pressure, FollowsItsTime) {
   const Surface s = ball(4, 0.1);
-  const Pressure load(s.volume(), [](double, double t) -> std::optional<Gas> {
+  const Pressure load(volume_of(s), [](double, double t) -> std::optional<Gas> {
     if (t == 0) return std::nullopt;
     return Gas{1000 * t, 0, 0};
   });
@@ -150,14 +123,14 @@ TEST(Pressure, FollowsItsTime) {
   step.time_end = 0;
   EXPECT_EQ(load.potential(step), nullptr);
   step.time_end = 2;
-  EXPECT_NEAR(load.potential(step)->value(s.x), -2000 * s.volume()->value(s.x), 1e-12);
+  EXPECT_NEAR(load.potential(step)->value(s.x), -2000 * volume_of(s)->value(s.x), 1e-12);
 }
 
 TEST(PressureEnergy, RefusesANegativeAmountOfGas) {
   const Surface s = ball(4, 0.1);
-  EXPECT_THROW(PressureEnergy(s.volume(), {-2e5, 1e5, 1}), Error);
-  EXPECT_THROW(PressureEnergy(s.volume(), {1e3, 1e5, -1}), Error);
-  EXPECT_THROW(PressureEnergy(s.volume(), {NAN, 0, 0}), Error);
+  EXPECT_THROW(PressureEnergy(volume_of(s), {-2e5, 1e5, 1}), Error);
+  EXPECT_THROW(PressureEnergy(volume_of(s), {1e3, 1e5, -1}), Error);
+  EXPECT_THROW(PressureEnergy(volume_of(s), {NAN, 0, 0}), Error);
 }
 
 }  // namespace
