@@ -116,6 +116,31 @@ TEST_F(SolidScene, ValidateRefusesRatiosThatNoReaderSaw) {
   EXPECT_THROW(validate(scene), Error);
 }
 
+TEST_F(SolidScene, StepsConvergeAloneBesideSpringsAndBesideAnotherBody) {
+  const std::string more =
+      "contact = false\n[[pin]]\nbody = 'block'\nwhere = { plane = { point = [0, 0, 0], normal = [1, 0, 0], "
+      "distance = 0.01 "
+      "} }\n"
+      "[[force]]\ntype = 'gravity'\n";
+  const std::string other =
+      "[[body]]\nname = 'other'\nmesh = 'box.obj'\nvoxel_width = 0.1\ntranslate = [0, 1, 0]\ncontact = "
+      "false\n"
+      "material = { density = 1000, edge_modulus = 1e5, face_diagonal_modulus = 1e4 }\n";
+  for (const std::string& scene :
+       {text("{ density = 1000, young_modulus = 1e5, poisson = 0.4, stiffness_damping = 0.01 }") + more,
+        text("{ density = 1000, young_modulus = 1e5, edge_modulus = 1e4, stiffness_damping = 0.01 }") + more,
+        other + text("{ density = 1000, young_modulus = 1e5 }") + more}) {
+    Simulation simulation(
+        std::make_shared<const Model>(build_model(parse_scene(scene, folder() / "scene.toml"))));
+    for (int frame = 0; frame < 12; ++frame) {
+      simulation.advance();
+      const Diagnostics& row = simulation.diagnostics();
+      EXPECT_EQ(row.converged_steps, row.steps);
+      EXPECT_LE(row.newton_iterations, 4 * row.steps);
+    }
+  }
+}
+
 TEST_F(SolidScene, MirroredBlockComesBackToRest) {
   // Every element starts inverted; no step fails, and the block is at rest in the end.
   const auto model =
