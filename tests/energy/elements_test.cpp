@@ -86,7 +86,7 @@ Case stretch_limit() {
                   {scaled(1.07, 1, 0.9), scaled(1.3, 1, 1.2)}, 0.005);
 }
 
-/// Of a first step, bent beyond the yield angle here and there.
+/// The energy of a first step, bent beyond the yield angle here and there.
 Case plastic_hinges() {
   Case c = hinges();
   const Mesh mesh = test::flat_sheet(7, 6, 0.7, 0.6, 0.2);

@@ -1,5 +1,5 @@
-// What loads remember is part of the state: plastic hinges stay bent, what they lose is in the energy
-// balance, and checkpoints, failed steps and lost workspaces leave no trace.
+// Loads keep what they remember in the state: plastic hinges stay bent, their loss is in the energy balance,
+// and checkpoints, failed steps and lost workspaces leave no trace.
 #include "muslin/potential/history.hpp"
 
 #include <cmath>

@@ -24,7 +24,7 @@ inline constexpr int element_lanes = 8;
 template <int N>
 using Batch = double[N][3][element_lanes];
 
-/// How much of the masses a stiffness may use: see Stiffness::bounded.
+/// The share of the masses that a stiffness may use: see Stiffness::bounded.
 struct MassBound {
   double scale = 1;
   double held[element_lanes] = {};  ///< by lane [kg]

@@ -35,8 +35,8 @@ struct LawParameter {
   }
 };
 
-/// One number of every element, by entry of ElementSlabs. Where all are equal, one batch of them is stored
-/// and read again and again.
+/// One number of every element, by entry of ElementSlabs. Equal numbers are stored as one batch, which is
+/// read again and again.
 class LaneArray {
  public:
   LaneArray() = default;

@@ -49,8 +49,8 @@ class TetrahedronStencil {
   static constexpr int corners = 4;
   using Matrix = LaneMatrix;
 
-  /// `inverses` [1/m] and `volumes` [m³] by element. Where all elements have an entry in common it is stored
-  /// once.
+  /// `inverses` [1/m] and `volumes` [m³] by element. An entry that all
+  /// elements have in common is stored once.
   TetrahedronStencil(const ElementSlabs<4>& slabs, const std::vector<Mat3>& inverses,
                      const std::vector<double>& volumes) {
     for (std::size_t i = 0; i < 9; ++i) {

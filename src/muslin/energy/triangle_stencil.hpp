@@ -39,7 +39,7 @@ struct PlaneStress {
 struct PlaneModuli {
   double c11, c12, c22, g;
 };
-/// Of a law in principal directions: at half the angle of this cosine and sine from warp.
+/// The stiffness of a law in principal directions, at half the angle of this cosine and sine from warp.
 struct PrincipalStiffness {
   double cosine, sine;
   PlaneModuli moduli;

@@ -9,7 +9,7 @@
 namespace muslin {
 namespace {
 
-/// Where the array of a name begins, −1 if there is none. Also where arrays are damaged.
+/// Returns the index at which the array of a name begins, −1 if there is none.
 std::int64_t begin_of(const History& history, std::string_view name, std::size_t count) {
   std::string_view names(reinterpret_cast<const char*>(history.names.data()), history.names.size());
   std::int64_t begin = 0;

@@ -12,7 +12,7 @@ namespace muslin {
 /// The springs of a coupling pattern.
 struct BlockSprings {
   std::span<const CentralSpring> kinds;
-  /// Of k: 16 for each block, 0 where a lane has no spring; null: all 1.
+  /// Factors of k: 16 for each block, 0 where a lane has no spring; null: all 1.
   const float* weights = nullptr;
   /// The body's vertices.
   ConstVectors x;
