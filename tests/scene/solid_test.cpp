@@ -75,6 +75,11 @@ TEST_F(SolidScene, HasTheEnergyOfTheLaw) {
   EXPECT_NEAR(model.potentials[0].potential->value(x) / (0.5 * modulus * 1e-8 * volume), 1, 1e-3);
 }
 
+TEST_F(SolidScene, IsNotWarnedOfMissingDiagonals) {
+  EXPECT_THAT(read("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5 }").warnings, testing::IsEmpty());
+  EXPECT_THAT(read("{ density = 1000, edge_modulus = 1e5 }").warnings, testing::SizeIs(1));
+}
+
 TEST_F(SolidScene, MaterialFileHasTheKeysToo) {
   const Scene scene = read("'foam.toml'");
   EXPECT_EQ(scene.bodies[0].material.youngs_modulus, 4e4);
@@ -127,9 +132,8 @@ TEST_F(SolidScene, StepsConvergeAloneBesideSpringsAndBesideAnotherBody) {
       "false\n"
       "material = { density = 1000, edge_modulus = 1e5, face_diagonal_modulus = 1e4 }\n";
   for (const std::string& scene :
-       {text("{ density = 1000, young_modulus = 1e5, poisson = 0.4, stiffness_damping = 0.01 }") + more,
-        text("{ density = 1000, young_modulus = 1e5, edge_modulus = 1e4, stiffness_damping = 0.01 }") + more,
-        other + text("{ density = 1000, young_modulus = 1e5 }") + more}) {
+       {text("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5, poisson = 0.4, stiffness_damping = 0.01 }") + more,
+        other + text("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5 }") + more}) {
     Simulation simulation(
         std::make_shared<const Model>(build_model(parse_scene(scene, folder() / "scene.toml"))));
     for (int frame = 0; frame < 12; ++frame) {

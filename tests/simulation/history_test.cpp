@@ -1,5 +1,6 @@
 // Loads keep what they remember in the state: plastic hinges stay bent, their loss is in the energy balance,
 // and checkpoints, failed steps and lost workspaces leave no trace.
+#include "muslin/component/shell/shell_body.hpp"
 #include "muslin/potential/history.hpp"
 
 #include <cmath>
@@ -39,7 +40,7 @@ struct Fold {
                    {0.3, Vec3::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(-fold, axis))}};
     scene.hold({3}, motion);
     scene.model.pins.back().until = let_go;
-    const Shell& shell = scene.model.bodies[0].shell;
+    const Shell& shell = as_shell(scene.model.bodies[0])->shell;
     hinges = std::make_shared<PlasticHinges>("fold", shell, BendingModuli{rigidity, rigidity, rigidity},
                                              YieldLimit{yield, hardening}, block_pattern(shell));
     scene.model.loads.push_back(
@@ -52,12 +53,12 @@ struct Fold {
   }
 
   double stiffness() const {
-    const Hinge& hinge = model->bodies[0].shell.hinges[0];
+    const Hinge& hinge = as_shell(model->bodies[0])->shell.hinges[0];
     return rigidity * hinge.length * hinge.length / hinge.area;
   }
   static double angle(const Simulation& simulation, const Model& model) {
     const std::vector<Vec3>& x = simulation.state().positions;
-    const auto& v = model.bodies[0].shell.hinges[0].vertices;
+    const auto& v = as_shell(model.bodies[0])->shell.hinges[0].vertices;
     return std::abs(hinge_angle(x[static_cast<std::size_t>(v[0])], x[static_cast<std::size_t>(v[1])],
                                 x[static_cast<std::size_t>(v[2])], x[static_cast<std::size_t>(v[3])]));
   }
