@@ -121,7 +121,7 @@ TEST_F(SolidScene, ValidateRefusesRatiosThatNoReaderSaw) {
   EXPECT_THROW(validate(scene), Error);
 }
 
-TEST_F(SolidScene, StepsConvergeAloneBesideSpringsAndBesideAnotherBody) {
+TEST_F(SolidScene, StepsConvergeAloneAndBesideAnotherBody) {
   const std::string more =
       "contact = false\n[[pin]]\nbody = 'block'\nwhere = { plane = { point = [0, 0, 0], normal = [1, 0, 0], "
       "distance = 0.01 "
