@@ -5,6 +5,7 @@
 #include "support/ball_surface.hpp"
 #include <gtest/gtest.h>
 
+#include "muslin/component/shell/shell_body.hpp"
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/pressure_energy.hpp"
 #include "muslin/potential/mass_damping.hpp"
@@ -22,9 +23,10 @@ struct Balloon {
   explicit Balloon(const Gas& gas) {
     const test::Surface surface = test::ball(14, radius);
     volume = std::make_shared<const EnclosedVolume>(surface.triangles, surface.x.size());
-    Body body;
+    const auto shell = std::make_shared<ShellBody>();
+    ShellBody& body = *shell;
     body.name = "balloon";
-    body.model = BodyModel::shell;
+    body.settings.material.shell = ShellMaterial{};
     body.mesh.positions = surface.x;
     body.mesh.face_offsets = {0};
     for (const Vec3i& t : surface.triangles) {
@@ -47,7 +49,7 @@ struct Balloon {
          std::make_shared<MembraneEnergy>(body.shell, moduli, block_pattern(body.shell))});
     model.potentials.push_back({"gas", EnergyRole::potential, std::make_shared<PressureEnergy>(volume, gas)});
     model.loads.push_back({"drag", EnergyRole::dissipation, std::make_shared<MassDamping>(20, model.masses)});
-    model.bodies.push_back(std::move(body));
+    model.bodies.push_back(shell);
   }
 };
 
