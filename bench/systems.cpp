@@ -7,8 +7,8 @@
 #include "support/sheet.hpp"
 #include "support/simple_potentials.hpp"
 
-#include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/shell_bending.hpp"
 #include "muslin/solver/incremental_potential.hpp"
 #include "muslin/solver/pcg_solver.hpp"
 
@@ -49,7 +49,7 @@ std::map<std::string, double> cloth_steps(int n, bool coarse_space) {
   const Shell shell = build_shell(mesh, mesh.positions, {});
   const auto pattern = block_pattern(shell);
   const MembraneEnergy membrane(shell, {1000, 1000, 400, 0.3}, pattern);
-  const HingeBending bending(shell, {1e-5, 1e-5, 1e-5}, pattern);
+  const ShellBending bending(shell, {1e-5, 1e-5, 1e-5}, pattern);
   std::vector<double> masses;
   for (const double area : shell.vertex_areas) masses.push_back(0.2 * area);
   const test::UniformGravity gravity(masses, Vec3(0, -9.8, 0));

@@ -5,8 +5,8 @@
 #include "support/sheet.hpp"
 #include <gtest/gtest.h>
 
-#include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/shell_bending.hpp"
 
 namespace muslin {
 namespace {
@@ -28,7 +28,7 @@ struct Moving {
 std::vector<std::shared_ptr<ElementEnergy>> energies(const Mesh& mesh) {
   const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
   return {std::make_shared<MembraneEnergy>(shell, MembraneModuli{900, 500, 130, 0.25}),
-          std::make_shared<HingeBending>(shell, BendingModuli{1e-3, 3e-4, 5e-4})};
+          std::make_shared<ShellBending>(shell, BendingModuli{1e-3, 3e-4, 5e-4})};
 }
 
 TEST(ElementDamping, PassesTheBattery) {
@@ -82,7 +82,7 @@ TEST(ElementEnergy, MatrixIsTheProjectedStiffnessWhereMassesHoldNothing) {
   const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
   const auto pattern = block_pattern(shell);
   const MembraneEnergy membrane(shell, {900, 500, 130, 0.25}, pattern);
-  const HingeBending bending(shell, {1e-3, 3e-4, 5e-4}, pattern);
+  const ShellBending bending(shell, {1e-3, 3e-4, 5e-4}, pattern);
   const std::vector<Vec3> x =
       test::sum(test::rolled(mesh.positions, 3), 1, test::random_vectors(mesh.vertex_count(), 0.004, 5));
   const std::vector<double> masses(x.size(), 1e-6);

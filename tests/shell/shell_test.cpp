@@ -81,12 +81,22 @@ TEST(Shell, RestShapeMayBeAnother) {
   EXPECT_NEAR(bent, 2 * 0.25, 1e-6);
 }
 
+TEST(Shell, EdgeOfThreeTrianglesHasTwoHingesWithTheFirst) {
+  Mesh mesh;
+  mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)};
+  for (const auto& face : {std::array{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}) mesh.add_face(face);
+  const Shell shell = build_shell(mesh, mesh.positions, along_x);
+  ASSERT_EQ(shell.hinges.size(), 2U);
+  EXPECT_EQ(shell.hinges[0].vertices, (std::array{0, 1, 2, 3}));
+  EXPECT_EQ(shell.hinges[1].vertices, (std::array{0, 1, 2, 4}));
+  EXPECT_NEAR(shell.hinges[0].angle, 0, 1e-12);
+  EXPECT_NEAR(std::abs(shell.hinges[1].angle), std::numbers::pi / 2, 1e-12);
+}
+
 TEST(Shell, SaysWhatIsWrongWithTheMesh) {
-  Mesh junction = test::flat_sheet(1, 1, 1, 1);
-  junction.positions.emplace_back(0.5, 1, 0.5);
-  junction.add_face(std::array{0, 3, 4});
-  junction.add_face(std::array{0, 4, 1});
-  EXPECT_THAT(problem(junction), testing::AllOf(HasSubstr("shared by 3 triangles"), HasSubstr("vertices 1")));
+  Mesh twice = test::flat_sheet(2, 1, 1, 1);
+  twice.add_face(std::array{0, 3, 4});
+  EXPECT_THAT(problem(twice), HasSubstr("polygons 1 and 3 both have the triangle of vertices"));
 
   Mesh flat = test::flat_sheet(1, 1, 1, 1);
   flat.positions.emplace_back(2, 0, 0);

@@ -10,9 +10,10 @@
 namespace muslin {
 namespace {
 
-/// Positions after each of eight frames of four steps: the sheet of 1 m meets the ball in the sixth.
+/// Positions after each of seven frames of four steps: the sheet of 1 m meets the ball in the sixth, and
+/// folds in the eighth, from where rounding grows tenfold a frame.
 std::vector<std::vector<Vec3>> drop(const SolverSettings& solver) {
-  constexpr int n = 50, frames = 8;
+  constexpr int n = 50, frames = 7;
   test::ContactScene scene(4);
   scene.model.scene.solver = solver;
   test::ClothGrid cloth(n, n, 1.0 / (n - 1));
@@ -49,9 +50,9 @@ TEST(Accuracy, EffortsAreNearTheTightSolutionUpToTheFirstFolds) {
     settings.effort = effort;
     return distance(drop(settings), reference);
   };
-  EXPECT_LT(off(Effort::draft), 5e-3);
-  EXPECT_LT(off(Effort::normal), 1e-3);
-  EXPECT_LT(off(Effort::exact), 5e-5);
+  EXPECT_LT(off(Effort::draft), 1e-3);
+  EXPECT_LT(off(Effort::normal), 4e-4);
+  EXPECT_LT(off(Effort::exact), 5e-6);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "muslin/core/parallel.hpp"
-#include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/shell_bending.hpp"
 #include "muslin/energy/spring_energy.hpp"
 #include "muslin/potential/restricted.hpp"
 #include "muslin/solver/solver.hpp"
@@ -207,7 +207,7 @@ struct Cloth {
     const Shell shell = build_shell(mesh, mesh.positions, {});
     const auto pattern = block_pattern(shell);
     membrane = std::make_unique<MembraneEnergy>(shell, MembraneModuli{1000, 1000, 400, 0.3}, pattern);
-    bending = std::make_unique<HingeBending>(shell, BendingModuli{1e-5, 1e-5, 1e-5}, pattern);
+    bending = std::make_unique<ShellBending>(shell, BendingModuli{1e-5, 1e-5, 1e-5}, pattern);
     for (const double area : shell.vertex_areas) masses.push_back(0.2 * area);
     gravity = std::make_unique<test::UniformGravity>(masses, Vec3(0, -9.8, 0));
     rest = mesh.positions;
@@ -237,7 +237,7 @@ struct Cloth {
   }
 
   std::unique_ptr<MembraneEnergy> membrane;
-  std::unique_ptr<HingeBending> bending;
+  std::unique_ptr<ShellBending> bending;
   std::unique_ptr<test::UniformGravity> gravity;
   std::vector<Vec3> rest;
   std::vector<double> masses;

@@ -14,8 +14,8 @@
 
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/contact/contact_model.hpp"
-#include "muslin/energy/hinge_bending.hpp"
 #include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/shell_bending.hpp"
 #include "muslin/potential/restricted.hpp"
 #include "muslin/scene/model.hpp"
 
@@ -65,7 +65,7 @@ class ContactScene {
     add(body, std::make_shared<MembraneEnergy>(
                   body.shell, MembraneModuli{m.membrane, m.membrane, shear, m.poisson}, pattern));
     add(body,
-        std::make_shared<HingeBending>(body.shell, BendingModuli{m.bending, m.bending, m.bending}, pattern));
+        std::make_shared<ShellBending>(body.shell, BendingModuli{m.bending, m.bending, m.bending}, pattern));
     const auto first_point = static_cast<int>(bodies_of_points_.size());
     for (std::size_t v = 0; v < grid.positions.size(); ++v) {
       add_vertex(grid.positions[v], m.areal_density * body.shell.vertex_areas[v]);

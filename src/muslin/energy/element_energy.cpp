@@ -38,8 +38,7 @@ class Dashpots : public Potential {
 
   void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override {
     if (energy_->pattern()) {
-      energy_->add_stiffness_matrix(Stiffness::material, predicted_, into.scale() * factor_, {},
-                                    into.pair_blocks(energy_->pattern(), first));
+      energy_->linearize_stiffness(Stiffness::material, predicted_, factor_, into, first);
     } else {
       into.add_general(*this, first, x);
     }
@@ -70,10 +69,15 @@ class Dashpots : public Potential {
 
 }  // namespace
 
+void ElementEnergy::linearize_stiffness(Stiffness kind, ConstVectors x, double factor, HessianSink& into,
+                                        std::size_t first) const {
+  add_stiffness_matrix(kind, x, into.scale() * factor, into.masses().subspan(first, x.size()),
+                       into.pair_blocks(pattern_, first));
+}
+
 void ElementEnergy::linearize(ConstVectors x, HessianSink& into, std::size_t first) const {
   if (pattern_) {
-    add_stiffness_matrix(Stiffness::bounded, x, into.scale(), into.masses().subspan(first, x.size()),
-                         into.pair_blocks(pattern_, first));
+    linearize_stiffness(Stiffness::bounded, x, 1, into, first);
   } else {
     into.add_general(projected_, first, x);
   }

@@ -30,7 +30,8 @@ class ElementEnergy : public Potential {
 
   /// y += K p, K the stiffness of this kind at x, #V by 3.
   virtual void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const = 0;
-  /// blocks[v] += the diagonal blocks of K; `kind` is material or projected.
+  /// blocks[v] += the diagonal blocks of K or, where elements are coupled (energy/shell_bending.hpp), of a
+  /// matrix A with K ≤ 2 A; `kind` is material or projected.
   virtual void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const = 0;
 
   void add_hessian_product(ConstVectors x, ConstVectors p, Vectors y) const override {
@@ -39,11 +40,15 @@ class ElementEnergy : public Potential {
   void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const override {
     add_stiffness_blocks(Stiffness::projected, x, blocks);
   }
-  /// Adds `scale` K to the blocks of a matrix of pattern(); `kind` is not exact. With `bounded`, M + scale K
-  /// is at least a tenth of M, the diagonal of `masses` (#V, read only then), in every direction; of the
-  /// laws only the membrane's uses the masses.
+  /// Adds `scale` K, or `scale` A as above, to the blocks of a matrix of pattern(); `kind` is not exact. With
+  /// `bounded`, M + scale K is at least a tenth of M, the diagonal of `masses` (#V, read only then), in every
+  /// direction; of the laws only the membrane's uses the masses.
   virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
                                     std::span<const double> masses, PairBlocks blocks) const = 0;
+  /// Adds `factor` K, or `factor` A as above, to a linear system, W being of the vertices first, first + 1,
+  /// …; `kind` is not exact. Needs a pattern.
+  virtual void linearize_stiffness(Stiffness kind, ConstVectors x, double factor, HessianSink& into,
+                                   std::size_t first) const;
   /// Returns the pattern, if given; without it the inner solver computes products from x.
   const std::shared_ptr<const SymmetricPattern>& pattern() const { return pattern_; }
 

@@ -85,8 +85,19 @@ class ElementSlabs {
     });
   }
 
-  /// The same; returns the sum of batch(first, count, owned, slab), which must be that of the first `owned`
-  /// entries only, so that each element counts once.
+  /// Calls batch(first, count) likewise for every element once.
+  template <class Body>
+  void for_each_owned_batch(const Body& batch) const {
+    parallel_for(slabs_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        for (int e = slabs_[s].begin; e < slabs_[s].owned_end; e += element_lanes)
+          batch(e, std::min(element_lanes, slabs_[s].owned_end - e));
+      }
+    });
+  }
+
+  /// As for_each_batch; returns the sum of batch(first, count, owned, slab), which must be that of the first
+  /// `owned` entries only, so that each element counts once.
   template <class Body>
   double sum_of_batches(const Body& batch) const {
     return parallel_sum(slabs_.size(), 1, 0.0, [&](std::size_t begin, std::size_t end) {

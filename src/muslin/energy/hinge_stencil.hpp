@@ -245,14 +245,21 @@ class HingeStencil {
 
   /// For rows of corners with a bit in `rows`.
   template <class Law>
-  MUSLIN_VECTOR_CODE static void add_pair_blocks(const LawLanes<Law>&, const double*, const Stiff<Law>& stiff,
-                                                 double scale, int count, const unsigned* rows,
-                                                 const ElementSlabs<4>::Slots* slots, Float4* blocks) {
+  static void add_pair_blocks(const LawLanes<Law>&, const double*, const Stiff<Law>& stiff, double scale,
+                              int count, const unsigned* rows, const ElementSlabs<4>::Slots* slots,
+                              Float4* blocks) {
+    add_squares(stiff.curvature, stiff.gradient, scale, count, rows, slots, blocks);
+  }
+
+  /// Adds scale · curvature ∇θ∇θᵀ, likewise.
+  MUSLIN_VECTOR_CODE static inline void add_squares(const double* curvature, const Batch<4>& gradient,
+                                                    double scale, int count, const unsigned* rows,
+                                                    const ElementSlabs<4>::Slots* slots, Float4* blocks) {
     float d[4][3][element_lanes];
     for (int l = 0; l < element_lanes; ++l) {
-      const double root = std::sqrt(scale * stiff.curvature[l]);
+      const double root = std::sqrt(scale * curvature[l]);
       for (int c = 0; c < 4; ++c)
-        for (int k = 0; k < 3; ++k) d[c][k][l] = static_cast<float>(root * stiff.gradient[c][k][l]);
+        for (int k = 0; k < 3; ++k) d[c][k][l] = static_cast<float>(root * gradient[c][k][l]);
     }
     for (int l = 0; l < count; ++l) {
       Float4 of_corner[4];
@@ -269,7 +276,7 @@ class HingeStencil {
     }
   }
 
- private:
+  /// θ − θ₀ within −π … π.
   MUSLIN_INLINE static void find_deviations(const BentHinge& h, const double* rest, double* out) {
     constexpr double turn = 2 * std::numbers::pi;
     for (int l = 0; l < element_lanes; ++l) {
@@ -278,6 +285,7 @@ class HingeStencil {
     }
   }
 
+ private:
   std::vector<double> rest_;  // by entry: θ₀
 };
 

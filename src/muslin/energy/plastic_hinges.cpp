@@ -1,5 +1,6 @@
 #include "muslin/energy/plastic_hinges.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <span>
 #include <string>
@@ -11,6 +12,26 @@
 namespace muslin {
 
 template class Elements<HingeStencil, PlasticHingeLaw>;
+
+namespace {
+
+double rigidity(const BendingModuli& m, double warp_share) {
+  const double weft_share = 1 - warp_share;
+  return m.warp * warp_share * warp_share + m.weft * weft_share * weft_share +
+         (4 * m.bias - m.warp - m.weft) * warp_share * weft_share;
+}
+
+/// ψ'' of every hinge [N·m].
+std::vector<double> hinge_stiffnesses(const Shell& shell, const BendingModuli& moduli) {
+  require(moduli.warp >= 0 && moduli.weft >= 0, "a bending modulus is negative", "give 0 or more");
+  std::vector<double> stiffnesses;
+  for (const Hinge& hinge : shell.hinges)
+    stiffnesses.push_back(std::max(0.0, rigidity(moduli, hinge.warp_share)) * hinge.length * hinge.length /
+                          hinge.area);
+  return stiffnesses;
+}
+
+}  // namespace
 
 /// The energy of one step.
 class PlasticHinges::Energy : public Elements<HingeStencil, PlasticHingeLaw> {

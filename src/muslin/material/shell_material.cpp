@@ -20,9 +20,9 @@ double bias_between(double warp, double weft) {
   return sum * sum / 4;
 }
 
-double lowest_bias(double warp, double weft) {
-  const double difference = std::sqrt(warp) - std::sqrt(weft);
-  return difference * difference / 4;
+/// Below it the plate would not resist twisting (energy/hinge_coupling.hpp).
+double lowest_bias(double warp, double weft, double poisson) {
+  return (warp + weft + 2 * poisson * std::sqrt(warp * weft)) / 4;
 }
 
 /// Derives what is not given from what is.
@@ -38,14 +38,14 @@ void complete(const TomlTable& table, ShellMaterial& m) {
 }
 
 void check_bias(const ShellMaterial& m, const schema::Subject& subject) {
-  const double lowest = lowest_bias(m.bending_warp, m.bending_weft);
+  const double lowest = lowest_bias(m.bending_warp, m.bending_weft, m.poisson);
   if (m.bending_bias >= lowest * (1 - 1e-12)) return;
   const bool bias_is_given = subject.table() == nullptr || subject.table()->has("bending_bias");
   throw subject.error(
       bias_is_given ? "bending_bias" : "bending_warp",
-      fmt::format("with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m some direction would have a negative "
-                  "bending rigidity",
-                  m.bending_bias, m.bending_warp, m.bending_weft),
+      fmt::format("with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m and a Poisson ratio of {:.4g} the sheet "
+                  "would twist by itself",
+                  m.bending_bias, m.bending_warp, m.bending_weft, m.poisson),
       fmt::format("give `bending_bias` at least {:.4g}", lowest));
 }
 
@@ -75,7 +75,7 @@ schema::Table declared() {
                   number("poisson", &ShellMaterial::poisson)
                       .range({-0.99, 0.99, false})
                       .otherwise("0.25")
-                      .means("geometric mean of the two directions' Poisson's ratios"),
+                      .means("of stretch and of bending: geometric mean of the two directions' Poisson's ratios"),
                   number("bending_warp", &ShellMaterial::bending_warp)
                       .unit("N·m")
                       .range(sheet_modulus)
@@ -90,7 +90,7 @@ schema::Table declared() {
                       .unit("N·m")
                       .range(sheet_modulus)
                       .otherwise("between the two")
-                      .means("bent at 45°; at least (√warp − √weft)²/4"),
+                      .means("bent at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer resists twisting"),
                   number("mass_damping", &ShellMaterial::mass_damping)
                       .unit("1/s")
                       .range(sheet_damping)

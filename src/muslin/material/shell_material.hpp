@@ -12,7 +12,7 @@ struct ShellMaterial {
   double membrane_warp = 0;      ///< force per width and strain along warp [N/m]
   double membrane_weft = 0;      ///< [N/m]
   double membrane_shear = 0;     ///< force per width and radian [N/m]
-  double poisson = 0;            ///< geometric mean of both directions
+  double poisson = 0;            ///< of stretch and of bending, geometric mean of both directions
   double bending_warp = 0;       ///< moment per width and curvature, bending warp [N·m]
   double bending_weft = 0;       ///< [N·m]
   double bending_bias = 0;       ///< at 45° between them [N·m]
@@ -23,8 +23,8 @@ struct ShellMaterial {
 
 /// The table [shell] of a material file. Without a `base` beside them areal_density, membrane_warp and
 /// bending_warp are required; weft is as warp, shear as in an isotropic sheet, bias between warp and weft,
-/// bending_damping as stiffness_damping, unless given. A bias so low that some direction between would have a
-/// negative rigidity is an error.
+/// bending_damping as stiffness_damping, unless given. A bias so low that the sheet would not
+/// resist twisting is an error.
 const schema::Table& shell_material_table();
 
 }  // namespace muslin

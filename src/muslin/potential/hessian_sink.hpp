@@ -20,6 +20,7 @@ namespace muslin {
 
 class Potential;
 class SymmetricPattern;
+struct FormCoupling;
 struct SpringNetwork;
 struct CentralSpring;
 
@@ -99,6 +100,11 @@ class HessianSink {
   /// set. Held vertices are left out by the potential.
   virtual RelativeTerms relative_terms(std::size_t first, std::size_t count, std::size_t terms,
                                        std::size_t weights) = 0;
+
+  /// Adds factor · Σ c_ef gₑ g_fᵀ with the coefficients c of `coupling`, which may be indefinite as long as
+  /// the sum is not. Returns g, four vectors and a zero each a form, to be set.
+  virtual Float4* coupled_forms(const std::shared_ptr<const FormCoupling>& coupling, std::size_t first,
+                                double factor) = 0;
 
   /// Returns the multiples of the identity on `count` vertices, to which potentials add.
   virtual std::span<float> identity(std::size_t first, std::size_t count) = 0;

@@ -7,8 +7,8 @@ namespace muslin {
 
 /// Adds the forces, the pins and the probes of model.scene to `model`, whose components, rest positions and
 /// masses already exist. Errors: input, with the place in the scene.
-void build_forces(Model& model);
 void build_pins(Model& model);
+void build_forces(Model& model);
 void build_probes(Model& model);
 
 }  // namespace muslin

@@ -79,6 +79,21 @@ void add_vertices(Model& model, Component& component, const Place& place) {
   model.prescribed.back().first = component.first_vertex;
 }
 
+/// Marks the component's vertices that a pin holds from the start and for ever. Pins that come or go leave the
+/// energies as they are, so that no step changes what is stored.
+std::vector<std::uint8_t> always_held(const Model& model, const Component& component) {
+  const auto count = static_cast<std::size_t>(component.vertex_count);
+  std::vector<std::uint8_t> held(count, 0);
+  for (const Pin& pin : model.pins) {
+    if (pin.from > 0 || std::isfinite(pin.until)) continue;
+    for (const int v : pin.vertices) {
+      const int local = v - component.first_vertex;
+      if (local >= 0 && local < component.vertex_count) held[static_cast<std::size_t>(local)] = 1;
+    }
+  }
+  return held;
+}
+
 /// Adds the potentials and loads of a component, as terms of all vertices.
 void add_terms(Model& model, const Component& component) {
   const auto first = static_cast<std::size_t>(component.first_vertex),
@@ -138,11 +153,14 @@ Model build_model(const Scene& scene, const Progress& progress) {
     add_vertices(model, *components[i], sources[i].place);
     model.bodies.push_back(components[i]);
   }
-  for (const Component& component : model.bodies) add_terms(model, component);
+  build_pins(model);
+  for (const std::shared_ptr<Component>& component : components) {
+    component->add_terms(always_held(model, *component));
+    add_terms(model, *component);
+  }
   choose_explicit_steps(model);
   build_forces(model);
   build_pressures(model);
-  build_pins(model);
   build_probes(model);
   build_contact(model);
   warn_of_explicit_steps(model);

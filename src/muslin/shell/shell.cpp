@@ -115,30 +115,13 @@ class ShellBuilder {
   }
 
   void add_hinges() {
-    Topology topology;
-    topology.face_offsets.resize(shell_.triangles.size() + 1);
-    for (std::size_t t = 0; t < shell_.triangles.size(); ++t) {
-      topology.face_offsets[t + 1] = static_cast<int>(3 * (t + 1));
-      for (const int v : shell_.triangles[t]) topology.face_vertices.push_back(v);
-    }
     std::size_t edges = 0;
-    for_each_edge(edge_uses(topology), [&](std::span<const EdgeUse> edge) {
+    for_each_edge(triangle_sides(shell_.triangles), [&](std::span<const EdgeUse> edge) {
       ++edges;
       shell_.mean_edge += (rest(edge[0].high) - rest(edge[0].low)).norm();
-      if (edge.size() > 2) refuse_junction(edge[0], edge.size());
-      if (edge.size() == 2) add_hinge(edge[0], edge[1]);
+      for (const EdgeUse& further : edge.subspan(1)) add_hinge(edge[0], further);
     });
     shell_.mean_edge /= static_cast<double>(edges);
-  }
-
-  [[noreturn]] void refuse_junction(const EdgeUse& side, std::size_t count) const {
-    throw Error(
-        ErrorKind::input,
-        fmt::format("the edge between vertices {} and {} is shared by {} triangles, one of polygon "
-                    "{}; a shell's edges have one or two",
-                    side.low + 1, side.high + 1, count,
-                    shell_.faces[static_cast<std::size_t>(side.face)] + 1),
-        "separate the extra polygons in the modeller (Blender: Select > All by Trait > Non Manifold)");
   }
 
   void add_hinge(const EdgeUse& first, const EdgeUse& second) {
@@ -147,6 +130,12 @@ class ShellBuilder {
     const int c = first.corner % 3;  // triangles have three corners each
     Hinge hinge;
     hinge.vertices = {v[c], v[(c + 1) % 3], v[(c + 2) % 3], shell_.triangles[t2][(second.corner + 2) % 3]};
+    if (hinge.vertices[2] == hinge.vertices[3]) {
+      throw Error(ErrorKind::input,
+                  fmt::format("polygons {} and {} both have the triangle of vertices {}, {}, {}",
+                              shell_.faces[t1] + 1, shell_.faces[t2] + 1, v[0] + 1, v[1] + 1, v[2] + 1),
+                  "delete double polygons in the modeller");
+    }
     const Vec3 edge = rest(hinge.vertices[1]) - rest(hinge.vertices[0]);
     hinge.length = edge.norm();
     hinge.area = shell_.areas[t1] + shell_.areas[t2];

@@ -33,7 +33,7 @@ struct Shell {
   std::vector<int> faces;            ///< #T, the polygon each comes from
   std::vector<double> areas;         ///< #T, at rest [m²]
   std::vector<Mat2> inverses;        ///< #T, inverse of the rest edges (columns) in (warp, weft) [1/m]
-  std::vector<Hinge> hinges;         ///< of every edge with two triangles
+  std::vector<Hinge> hinges;         ///< of every edge: its first triangle with each further one
   std::vector<double> vertex_areas;  ///< #V, a third of each adjacent triangle at rest [m²]
   double area = 0;                   ///< at rest [m²]
   double mean_edge = 0;              ///< at rest [m]
@@ -49,8 +49,8 @@ struct Weave {
 };
 
 /// `rest_positions` (#V of the mesh by 3) is the shape without stress. Errors: input, naming the polygon and
-/// the vertices (counted from 1), for edges with more than two polygons, triangles without area, vertices of
-/// no polygon, and texture coordinates that are missing or without area where they are needed.
+/// the vertices (counted from 1), for triangles given twice or without area, vertices of no polygon, and
+/// texture coordinates that are missing or without area where they are needed.
 MUSLIN_API Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave);
 
 /// Returns the angle of a hinge: 0 if flat, positive if vertices 2 and 3 turn away from the normal

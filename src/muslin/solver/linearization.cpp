@@ -28,6 +28,7 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   generals_.clear();
   rank_ones_.clear();
   relative_count_ = 0;
+  forms_count_ = 0;
   stiffest_relative_ = 0;
   identity_.resize(masses.size());
   for (std::size_t v = 0; v < masses.size(); ++v) identity_.data()[v] = static_cast<float>(masses[v]);
@@ -153,6 +154,12 @@ RelativeTerms Linearization::relative_terms(std::size_t first, std::size_t count
   return relative.resize(terms, weights);
 }
 
+Float4* Linearization::coupled_forms(const std::shared_ptr<const FormCoupling>& coupling, std::size_t first,
+                                     double factor) {
+  if (forms_count_ == forms_.size()) forms_.push_back(std::make_unique<CoupledForms>());
+  return forms_[forms_count_++]->reset(coupling, first, factor);
+}
+
 /// Adds empty couplings in pieces that end where block matrices do: packing groups of vertices with a common
 /// unit would lose cloth beside a rigid body, which is a million times as stiff.
 void Linearization::cover_gap(std::size_t begin, std::size_t end) {
@@ -269,6 +276,8 @@ double Linearization::add_remainder_product(const Float4* p, Float4* y) {
     sum += matrix->add_product(p + matrix->first(), y + matrix->first());
   for (std::size_t i = 0; i < relative_count_; ++i)
     sum += relatives_[i]->add_product(p + relatives_[i]->first(), y + relatives_[i]->first());
+  for (std::size_t i = 0; i < forms_count_; ++i)
+    sum += forms_[i]->add_product(p + forms_[i]->first(), y + forms_[i]->first());
   for (const RankOne& rank_one : rank_ones_) {
     const auto& [factor, vertices, gradients] = rank_one.term;
     const auto at = [&](std::size_t i) { return rank_one.first + static_cast<std::size_t>(vertices[i]); };
@@ -314,6 +323,7 @@ std::size_t Linearization::bytes() const {
   for (const auto& set : storage_) bytes += set->bytes();
   for (const auto& matrix : matrix_storage_) bytes += matrix->bytes();
   for (const auto& relative : relatives_) bytes += relative->bytes();
+  for (const auto& forms : forms_) bytes += forms->bytes();
   return bytes;
 }
 

@@ -2,7 +2,7 @@
 //
 //   H = diag(identity) + couplings + K,   K = block matrices + the loose rest,
 //
-// the loose rest being relative stiffnesses, rank-one terms and general potentials.
+// the loose rest being relative stiffnesses, coupled forms, rank-one terms and general potentials.
 //
 // It is the HessianSink to which potentials add themselves (Potential::linearize): springs become couplings,
 // pair blocks matrices, contacts relative stiffness; what is added as a general potential is multiplied in
@@ -19,6 +19,7 @@
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/hessian_sink.hpp"
 #include "muslin/potential/spring_network.hpp"
+#include "muslin/solver/coupled_forms.hpp"
 #include "muslin/solver/relative_stiffness.hpp"
 #include "muslin/solver/spring_hessian.hpp"
 #include "muslin/solver/symmetric_matrix.hpp"
@@ -47,6 +48,8 @@ class Linearization : public HessianSink {
                 ConstVectors x, std::size_t first) override;
   RelativeTerms relative_terms(std::size_t first, std::size_t count, std::size_t terms,
                                std::size_t weights) override;
+  Float4* coupled_forms(const std::shared_ptr<const FormCoupling>& coupling, std::size_t first,
+                        double factor) override;
   std::span<float> identity(std::size_t first, std::size_t count) override {
     return {identity_.data() + first, count};
   }
@@ -81,11 +84,11 @@ class Linearization : public HessianSink {
   /// True if K is not zero.
   bool has_remainder() const {
     return !matrices_.empty() || !stood_for_.empty() || !generals_.empty() || relative_count_ > 0 ||
-           !rank_ones_.empty();
+           forms_count_ > 0 || !rank_ones_.empty();
   }
-  /// Diagonal blocks of K but of matrices for which springs stand in, with the identity positive definite:
-  /// xx, xy, xz of `upper` and yy, yz, zz of `lower`, #V by 3. Relative stiffnesses are scaled down where
-  /// masses would be lost to rounding.
+  /// Diagonal blocks of K without the coupled forms and the matrices for which springs stand in, with the
+  /// identity positive definite: xx, xy, xz of `upper` and yy, yz, zz of `lower`, #V by 3. Relative
+  /// stiffnesses are scaled down where masses would be lost to rounding.
   const FloatVectors& remainder_upper() const { return upper_; }
   const FloatVectors& remainder_lower() const { return lower_; }
   /// Returns the largest trace of a diagonal block of relative stiffnesses over the vertex's part of the
@@ -142,6 +145,8 @@ class Linearization : public HessianSink {
   std::vector<std::unique_ptr<Arranged>> networks_;            // reused from step to step
   std::vector<std::unique_ptr<RelativeStiffness>> relatives_;  // reused from step to step
   std::size_t relative_count_ = 0;                             // of this x
+  std::vector<std::unique_ptr<CoupledForms>> forms_;           // reused from step to step
+  std::size_t forms_count_ = 0;                                // of this x
   FloatVectors upper_, lower_;
   double stiffest_relative_ = 0;
   std::vector<Vec3> p_, y_;  // for products in double

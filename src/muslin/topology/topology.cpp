@@ -45,6 +45,16 @@ std::vector<EdgeUse> edge_uses(const Topology& topology) {
   return uses;
 }
 
+std::vector<EdgeUse> triangle_sides(std::span<const Vec3i> triangles) {
+  Topology topology;
+  topology.face_offsets.resize(triangles.size() + 1);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    topology.face_offsets[t + 1] = static_cast<int>(3 * (t + 1));
+    for (const int v : triangles[t]) topology.face_vertices.push_back(v);
+  }
+  return edge_uses(topology);
+}
+
 TopologyChange cut(const Topology& topology, std::size_t vertex_count,
                    std::span<const std::array<int, 2>> edges) {
   const std::vector<VertexPair> opened = sorted_pairs(edges);

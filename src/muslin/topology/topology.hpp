@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "muslin/api.hpp"
+#include "muslin/core/vectors.hpp"
 
 namespace muslin {
 
@@ -42,6 +43,9 @@ struct EdgeUse {
 /// Returns the sides of all faces, sorted by edge, then face, then corner. Sides from a vertex to itself are
 /// left out.
 MUSLIN_API std::vector<EdgeUse> edge_uses(const Topology& topology);
+
+/// Returns those of triangles: the corner of a side is 3 t + c, c the corner of triangle t.
+std::vector<EdgeUse> triangle_sides(std::span<const Vec3i> triangles);
 
 /// Calls visit(uses of one edge) for each edge of sorted `uses`.
 template <class Visit>

@@ -7,11 +7,6 @@
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/placement.hpp"
 #include "muslin/component/shell/shell_body.hpp"
-#include "muslin/energy/element_energy.hpp"
-#include "muslin/energy/hinge_bending.hpp"
-#include "muslin/energy/membrane_energy.hpp"
-#include "muslin/energy/stretch_limit.hpp"
-#include "muslin/potential/mass_damping.hpp"
 
 namespace muslin {
 namespace {
@@ -28,7 +23,6 @@ class ShellBuilder {
     const Mesh rest = rest_mesh();
     at_place(settings_.mesh_place, file_, [&] { make_shell(rest); });
     weigh(body_);
-    add_terms();
     return built_;
   }
 
@@ -94,54 +88,11 @@ class ShellBuilder {
     s.hinges = static_cast<std::int64_t>(body_.shell.hinges.size());
   }
 
-  void add_terms() {
-    const ShellMaterial& m = *settings_.material.shell;
-    const auto pattern = block_pattern(body_.shell);
-    const auto membrane = std::make_shared<MembraneEnergy>(
-        body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson}, pattern);
-    add("membrane", membrane);
-    add_blocks(*membrane, 3);
-    // The limit has no stiffness at rest, so that the stable step does not know it.
-    if (settings_.stretch_limit) {
-      const double limit = *settings_.stretch_limit;
-      const double stiffness = stretch_limit_stiffness(std::max(m.membrane_warp, m.membrane_weft),
-                                                       body_.statistics.mass, body_.shell.mean_edge, limit);
-      add("stretch limit", std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness, pattern));
-    }
-    const auto bending = std::make_shared<HingeBending>(
-        body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias}, pattern);
-    add("bending", bending);
-    add_blocks(*bending, 4);
-    if (m.stiffness_damping > 0)
-      add_damping("stiffness damping", std::make_shared<ElementDamping>(membrane, m.stiffness_damping));
-    if (m.bending_damping > 0)
-      add_damping("bending damping", std::make_shared<ElementDamping>(bending, m.bending_damping));
-    const std::vector<double> masses = body_.masses();
-    if (m.mass_damping != 0)
-      add_damping("mass damping", std::make_shared<MassDamping>(m.mass_damping, masses));
-    body_.statistics.stable_step = stable_step(blocks_, masses);
-  }
-
-  void add(const char* name, std::shared_ptr<const Potential> potential) {
-    body_.potentials.push_back({name, EnergyRole::elastic, std::move(potential)});
-  }
-  void add_damping(const char* name, std::shared_ptr<const Load> load) {
-    body_.loads.push_back({name, EnergyRole::dissipation, std::move(load)});
-  }
-
-  void add_blocks(const Potential& potential, double vertices_of_element) {
-    std::vector<Mat3> blocks(body_.mesh.vertex_count(), Mat3::Zero());
-    potential.add_diagonal_blocks(body_.mesh.positions, blocks);
-    if (blocks_.empty()) blocks_.assign(blocks.size(), Mat3::Zero());
-    for (std::size_t v = 0; v < blocks.size(); ++v) blocks_[v] += vertices_of_element * blocks[v];
-  }
-
   const BodySettings& settings_;
   const ComponentInputs& inputs_;
   std::string file_;
   std::shared_ptr<ShellBody> built_ = std::make_shared<ShellBody>();
   ShellBody& body_ = *built_;
-  std::vector<Mat3> blocks_;
 };
 
 }  // namespace

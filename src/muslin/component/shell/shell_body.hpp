@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ class ShellBody final : public Component {
   Shell shell;
 
   std::string kind() const override { return "shell"; }
+  void add_terms(std::span<const std::uint8_t> held) override;
   Vec3 rest_position(std::size_t v) const override { return mesh.positions[v]; }
   std::vector<double> masses() const override;
   std::vector<Vec3> velocities() const override;

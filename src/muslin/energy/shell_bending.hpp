@@ -1,0 +1,69 @@
+// ShellBending is the bending energy of a shell,
+//
+//   W = ½ dᵀ K d,   d = w(θ − θ₀),
+//
+// θ the angles between the normals at its hinges, θ₀ those at rest, w the same angles within −π … π, and K
+// the constant matrix of a plate with the rigidities given (energy/hinge_coupling.hpp). Rigid motions store
+// nothing at any rest shape. The projected stiffness is the material one, Jᵀ K J with J = ∂θ/∂x. The blocks
+// and matrices of a hinge's own vertices are those of Jᵀ Λ J, Λ diagonal and K ≤ 2 Λ; linear systems get the
+// difference as coupled forms where the sheet is stiff beside its masses. A triangle without area has no
+// bending direction and exerts no force.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "muslin/energy/element_energy.hpp"
+#include "muslin/energy/hinge_coupling.hpp"
+#include "muslin/energy/hinge_stencil.hpp"
+#include "muslin/energy/shell_pattern.hpp"
+#include "muslin/potential/form_coupling.hpp"
+#include "muslin/shell/shell.hpp"
+
+namespace muslin {
+
+class ShellBending : public ElementEnergy {
+ public:
+  /// `pattern` is the shell's block_pattern, or null. `held` (#V, or empty): not 0 where a vertex does not
+  /// move but as a pin moves it. Triangles of held vertices clamp the sheet at their edges. Errors: those of
+  /// couple_hinges.
+  ShellBending(const Shell& shell, const BendingModuli& moduli,
+               std::shared_ptr<const SymmetricPattern> pattern = nullptr,
+               std::span<const std::uint8_t> held = {});
+
+  double value(ConstVectors x) const override;
+  void add_gradient(ConstVectors x, Vectors g) const override;
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override;
+  void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override;
+  void add_stiffness_blocks(Stiffness kind, ConstVectors x, std::span<Mat3> blocks) const override;
+  void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale, std::span<const double> masses,
+                            PairBlocks blocks) const override;
+  void linearize_stiffness(Stiffness kind, ConstVectors x, double factor, HessianSink& into,
+                           std::size_t first) const override;
+
+  const HingeCoupling& coupling() const { return coupling_; }
+
+ private:
+  using Slabs = ElementSlabs<4>;
+
+  std::vector<double> deviations(ConstVectors x) const;
+  /// Returns J p.
+  std::vector<double> changes(ConstVectors x, ConstVectors p) const;
+  /// Tells whether `scale` K is so large beside the masses that linear systems need more than Λ.
+  bool is_stiff(double scale, std::span<const double> masses) const;
+  void load(std::span<const double> of_hinge, int first, int count, double* lanes) const;
+  /// Adds `scale` Jᵀ Λ J to `blocks`; sets J, four vectors a hinge, unless null.
+  void assemble(ConstVectors x, double scale, PairBlocks blocks, Float4* gradients) const;
+
+  Slabs slabs_;
+  HingeStencil stencil_;
+  HingeCoupling coupling_;
+  // With a pattern.
+  std::vector<Slabs::Slots> slots_;                 // by entry
+  std::shared_ptr<const FormCoupling> difference_;  // K − Λ
+  std::vector<double> largest_;                     // by hinge: Λ |∂θ/∂x|² of an end at rest [N/m]
+};
+
+}  // namespace muslin
