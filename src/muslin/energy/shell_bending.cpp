@@ -9,9 +9,9 @@
 namespace muslin {
 namespace {
 
-// Of a hinge's stiffness times dt² to the mass of a vertex: up to this, Newton's method with the lumped
-// matrix takes at most a few iterations more, and linear iterations cost half (docs/notebook/bending.md).
-constexpr double stiff = 4;
+// Of the stiffness of all hinges times dt² to the masses: up to this, Newton's method with the lumped matrix
+// takes at most a few iterations more, and linear iterations cost half (docs/notebook/bending.md).
+constexpr double stiff = 16;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -99,7 +99,7 @@ ShellBending::ShellBending(const Shell& shell, const BendingModuli& moduli,
   difference_ = difference_of(shell, coupling_);
   // A mean of (1/h₁ + 1/h₂)², h₁ and h₂ the heights of its triangles.
   for (std::size_t e = 0; e < shell.hinges.size(); ++e)
-    largest_.push_back(coupling_.lumped[e] * std::pow(2 * shell.hinges[e].length / shell.hinges[e].area, 2));
+    stiffness_ += coupling_.lumped[e] * std::pow(2 * shell.hinges[e].length / shell.hinges[e].area, 2);
 }
 
 void ShellBending::load(std::span<const double> of_hinge, int first, int count, double* lanes) const {
@@ -227,19 +227,20 @@ void ShellBending::add_stiffness_matrix(Stiffness, ConstVectors x, double scale,
   assemble(x, scale, blocks, nullptr);
 }
 
-bool ShellBending::is_stiff(double scale, std::span<const double> masses) const {
-  for (std::size_t e = 0; e < largest_.size(); ++e)
-    for (const int v : difference_->vertices[e])
-      if (scale * largest_[e] > stiff * masses[at(v)]) return true;
-  return false;
+bool ShellBending::is_stiff(double scale, std::span<const double> masses,
+                            std::span<const std::uint8_t> fixed) const {
+  double free = 0;
+  for (std::size_t v = 0; v < masses.size(); ++v) free += fixed[v] == 0 ? masses[v] : 0;
+  return scale * stiffness_ > stiff * free;
 }
 
 void ShellBending::linearize_stiffness(Stiffness, ConstVectors x, double factor, HessianSink& into,
                                        std::size_t first) const {
   const double scale = into.scale() * factor;
-  const std::span<const double> masses = into.masses().subspan(first, x.size());
+  const bool whole =
+      is_stiff(scale, into.masses().subspan(first, x.size()), into.fixed().subspan(first, x.size()));
   assemble(x, scale, into.pair_blocks(pattern(), first),
-           is_stiff(scale, masses) ? into.coupled_forms(difference_, first, scale) : nullptr);
+           whole ? into.coupled_forms(difference_, first, scale) : nullptr);
 }
 
 }  // namespace muslin

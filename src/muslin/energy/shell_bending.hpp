@@ -52,7 +52,7 @@ class ShellBending : public ElementEnergy {
   /// Returns J p.
   std::vector<double> changes(ConstVectors x, ConstVectors p) const;
   /// Tells whether `scale` K is so large beside the masses that linear systems need more than Λ.
-  bool is_stiff(double scale, std::span<const double> masses) const;
+  bool is_stiff(double scale, std::span<const double> masses, std::span<const std::uint8_t> fixed) const;
   void load(std::span<const double> of_hinge, int first, int count, double* lanes) const;
   /// Adds `scale` Jᵀ Λ J to `blocks`; sets J, four vectors a hinge, unless null.
   void assemble(ConstVectors x, double scale, PairBlocks blocks, Float4* gradients) const;
@@ -63,7 +63,7 @@ class ShellBending : public ElementEnergy {
   // With a pattern.
   std::vector<Slabs::Slots> slots_;                 // by entry
   std::shared_ptr<const FormCoupling> difference_;  // K − Λ
-  std::vector<double> largest_;                     // by hinge: Λ |∂θ/∂x|² of an end at rest [N/m]
+  double stiffness_ = 0;                            // of all hinges: Σ Λ |∂θ/∂x|² at rest [N/m]
 };
 
 }  // namespace muslin
