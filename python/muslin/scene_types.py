@@ -118,10 +118,10 @@ MaterialOfAShell = TypedDict(
         "membrane_warp": Optional[float],  # force per width and strain along warp: Young's modulus × thickness [N/m]
         "membrane_weft": Optional[float],  # along weft [N/m]
         "membrane_shear": Optional[float],  # force per width and radian [N/m]
-        "poisson": Optional[float],  # geometric mean of the two directions' Poisson's ratios
+        "poisson": Optional[float],  # of stretch and of bending: geometric mean of the two directions' Poisson's ratios
         "bending_warp": Optional[float],  # moment per width and curvature, warp bent [N·m]
         "bending_weft": Optional[float],  # weft bent [N·m]
-        "bending_bias": Optional[float],  # bent at 45°; at least (√warp − √weft)²/4 [N·m]
+        "bending_bias": Optional[float],  # bent at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer resists twisting [N·m]
         "mass_damping": Optional[float],  # Rayleigh's α: slows all motion [1/s]
         "stiffness_damping": Optional[float],  # Rayleigh's β of stretch and shear [s]
         "bending_damping": Optional[float],  # Rayleigh's β of bending [s]

@@ -76,7 +76,8 @@ TEST_F(SolidScene, HasTheEnergyOfTheLaw) {
 }
 
 TEST_F(SolidScene, IsNotWarnedOfMissingDiagonals) {
-  EXPECT_THAT(read("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5 }").warnings, testing::IsEmpty());
+  EXPECT_THAT(read("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5 }").warnings,
+              testing::IsEmpty());
   EXPECT_THAT(read("{ density = 1000, edge_modulus = 1e5 }").warnings, testing::SizeIs(1));
 }
 
@@ -132,7 +133,9 @@ TEST_F(SolidScene, StepsConvergeAloneAndBesideAnotherBody) {
       "false\n"
       "material = { density = 1000, edge_modulus = 1e5, face_diagonal_modulus = 1e4 }\n";
   for (const std::string& scene :
-       {text("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5, poisson = 0.4, stiffness_damping = 0.01 }") + more,
+       {text("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5, poisson = 0.4, stiffness_damping "
+             "= 0.01 }") +
+            more,
         other + text("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5 }") + more}) {
     Simulation simulation(
         std::make_shared<const Model>(build_model(parse_scene(scene, folder() / "scene.toml"))));

@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Scene& s) { s.bodies[0].material.volume_modulus = -1; }},
         Mistake{"[[body]] `block`: `velocity` is not finite",
                 [](Scene& s) { s.bodies[0].velocity.x() = nan; }},
-        Mistake{"[[body]] `block`: its model is that of a collider",
+        Mistake{"[[body]] `block`: `model` is none of its choices",
                 [](Scene& s) { s.bodies[0].model = BodyModel::rigid; }},
         Mistake{"[[body]] `sheet`: another one has its name", [](Scene& s) { s.bodies[0].name = "sheet"; }},
         Mistake{"[[body]]: it has no name", [](Scene& s) { s.bodies[0].name.clear(); }},
@@ -120,12 +120,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[[body]] `sheet`: `bending_warp` is nan",
                 [](Scene& s) { s.bodies[1].material.shell->bending_warp = nan; }},
         Mistake{"[[body]] `sheet`: `stretch_limit` is 1", [](Scene& s) { s.bodies[1].stretch_limit = 1; }},
-        Mistake{
-            "[[body]] `sheet`: with 0 N·m at 45° between 1 and 0.01 N·m some direction would have a negative",
-            [](Scene& s) {
-              ShellMaterial& shell = *s.bodies[1].material.shell;
-              shell.bending_warp = 1, shell.bending_weft = 0.01, shell.bending_bias = 0;
-            }},
+        Mistake{"[[body]] `sheet`: with 0 N·m at 45° between 1 and 0.01 N·m and a Poisson ratio of",
+                [](Scene& s) {
+                  ShellMaterial& shell = *s.bodies[1].material.shell;
+                  shell.bending_warp = 1, shell.bending_weft = 0.01, shell.bending_bias = 0;
+                }},
         Mistake{"[[body]] `block`: `voxels` is none of its choices",
                 [](Scene& s) { s.bodies[0].lattice.rule = static_cast<VoxelRule>(7); }},
         Mistake{"[[body]] `block`: a colour is red, green and blue from 0 to 1",

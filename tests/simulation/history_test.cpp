@@ -1,6 +1,5 @@
 // Loads keep what they remember in the state: plastic hinges stay bent, their loss is in the energy balance,
 // and checkpoints, failed steps and lost workspaces leave no trace.
-#include "muslin/component/shell/shell_body.hpp"
 #include "muslin/potential/history.hpp"
 
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "support/small_model.hpp"
 #include <gtest/gtest.h>
 
+#include "muslin/component/shell/shell_body.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/energy/plastic_hinges.hpp"
 #include "muslin/potential/mass_damping.hpp"

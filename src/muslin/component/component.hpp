@@ -96,9 +96,9 @@ class MUSLIN_API Component {
   /// Returns the name of its kind in listings and files: no decision depends on it.
   virtual std::string kind() const = 0;
 
-  /// Adds to `potentials` and `loads` what depends on the vertices that are held during the whole run (#vertices,
-  /// not 0: held), and sets statistics.stable_step. Called once, before the component is shared. Default:
-  /// nothing.
+  /// Adds to `potentials` and `loads` what depends on the vertices that are held during the whole run
+  /// (#vertices, not 0: held), and sets statistics.stable_step. Called once, before the component is shared.
+  /// Default: nothing.
   virtual void add_terms(std::span<const std::uint8_t> held) { (void)held; }
 
   // Degrees of freedom.

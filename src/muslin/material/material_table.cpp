@@ -37,7 +37,7 @@ const schema::Table& lattice_material_table() {
            .means("mass per volume"),
        spring_modulus("edge_modulus", &Material::edge_modulus,
                       "of springs along voxel edges; a spring's constant is modulus × voxel width")
-           .required_without({"base", "youngs_modulus"}),
+           .required_without({"base", "youngs_modulus", "law"}),
        spring_modulus("face_diagonal_modulus", &Material::face_diagonal_modulus,
                       "of springs along face diagonals"),
        spring_modulus("body_diagonal_modulus", &Material::body_diagonal_modulus,

@@ -43,67 +43,70 @@ void check_bias(const ShellMaterial& m, const schema::Subject& subject) {
   const bool bias_is_given = subject.table() == nullptr || subject.table()->has("bending_bias");
   throw subject.error(
       bias_is_given ? "bending_bias" : "bending_warp",
-      fmt::format("with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m and a Poisson ratio of {:.4g} the sheet "
-                  "would twist by itself",
-                  m.bending_bias, m.bending_warp, m.bending_weft, m.poisson),
+      fmt::format(
+          "with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m and a Poisson ratio of {:.4g} the sheet "
+          "would twist by itself",
+          m.bending_bias, m.bending_warp, m.bending_weft, m.poisson),
       fmt::format("give `bending_bias` at least {:.4g}", lowest));
 }
 
 schema::Table declared() {
   using schema::number;
   schema::Table table = schema::table_of<ShellMaterial>(
-      "[shell]", {number("areal_density", &ShellMaterial::areal_density)
-                      .unit("kg/m²")
-                      .range({0, 1e6, true})
-                      .required_without({"base"})
-                      .means("mass per area"),
-                  number("membrane_warp", &ShellMaterial::membrane_warp)
-                      .unit("N/m")
-                      .range(sheet_modulus)
-                      .required_without({"base"})
-                      .means("force per width and strain along warp: Young's modulus × thickness"),
-                  number("membrane_weft", &ShellMaterial::membrane_weft)
-                      .unit("N/m")
-                      .range(sheet_modulus)
-                      .otherwise("`membrane_warp`")
-                      .means("along weft"),
-                  number("membrane_shear", &ShellMaterial::membrane_shear)
-                      .unit("N/m")
-                      .range(sheet_modulus)
-                      .otherwise("as in an isotropic sheet")
-                      .means("force per width and radian"),
-                  number("poisson", &ShellMaterial::poisson)
-                      .range({-0.99, 0.99, false})
-                      .otherwise("0.25")
-                      .means("of stretch and of bending: geometric mean of the two directions' Poisson's ratios"),
-                  number("bending_warp", &ShellMaterial::bending_warp)
-                      .unit("N·m")
-                      .range(sheet_modulus)
-                      .required_without({"base"})
-                      .means("moment per width and curvature, warp bent"),
-                  number("bending_weft", &ShellMaterial::bending_weft)
-                      .unit("N·m")
-                      .range(sheet_modulus)
-                      .otherwise("`bending_warp`")
-                      .means("weft bent"),
-                  number("bending_bias", &ShellMaterial::bending_bias)
-                      .unit("N·m")
-                      .range(sheet_modulus)
-                      .otherwise("between the two")
-                      .means("bent at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer resists twisting"),
-                  number("mass_damping", &ShellMaterial::mass_damping)
-                      .unit("1/s")
-                      .range(sheet_damping)
-                      .means("Rayleigh's α: slows all motion"),
-                  number("stiffness_damping", &ShellMaterial::stiffness_damping)
-                      .unit("s")
-                      .range(sheet_damping)
-                      .means("Rayleigh's β of stretch and shear"),
-                  number("bending_damping", &ShellMaterial::bending_damping)
-                      .unit("s")
-                      .range(sheet_damping)
-                      .otherwise("`stiffness_damping`")
-                      .means("Rayleigh's β of bending")});
+      "[shell]",
+      {number("areal_density", &ShellMaterial::areal_density)
+           .unit("kg/m²")
+           .range({0, 1e6, true})
+           .required_without({"base"})
+           .means("mass per area"),
+       number("membrane_warp", &ShellMaterial::membrane_warp)
+           .unit("N/m")
+           .range(sheet_modulus)
+           .required_without({"base"})
+           .means("force per width and strain along warp: Young's modulus × thickness"),
+       number("membrane_weft", &ShellMaterial::membrane_weft)
+           .unit("N/m")
+           .range(sheet_modulus)
+           .otherwise("`membrane_warp`")
+           .means("along weft"),
+       number("membrane_shear", &ShellMaterial::membrane_shear)
+           .unit("N/m")
+           .range(sheet_modulus)
+           .otherwise("as in an isotropic sheet")
+           .means("force per width and radian"),
+       number("poisson", &ShellMaterial::poisson)
+           .range({-0.99, 0.99, false})
+           .otherwise("0.25")
+           .means("of stretch and of bending: geometric mean of the two directions' Poisson's ratios"),
+       number("bending_warp", &ShellMaterial::bending_warp)
+           .unit("N·m")
+           .range(sheet_modulus)
+           .required_without({"base"})
+           .means("moment per width and curvature, warp bent"),
+       number("bending_weft", &ShellMaterial::bending_weft)
+           .unit("N·m")
+           .range(sheet_modulus)
+           .otherwise("`bending_warp`")
+           .means("weft bent"),
+       number("bending_bias", &ShellMaterial::bending_bias)
+           .unit("N·m")
+           .range(sheet_modulus)
+           .otherwise("between the two")
+           .means("bent at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer "
+                  "resists twisting"),
+       number("mass_damping", &ShellMaterial::mass_damping)
+           .unit("1/s")
+           .range(sheet_damping)
+           .means("Rayleigh's α: slows all motion"),
+       number("stiffness_damping", &ShellMaterial::stiffness_damping)
+           .unit("s")
+           .range(sheet_damping)
+           .means("Rayleigh's β of stretch and shear"),
+       number("bending_damping", &ShellMaterial::bending_damping)
+           .unit("s")
+           .range(sheet_damping)
+           .otherwise("`stiffness_damping`")
+           .means("Rayleigh's β of bending")});
   table.complete = [](const TomlTable& given, void* settings) {
     complete(given, *static_cast<ShellMaterial*>(settings));
   };
