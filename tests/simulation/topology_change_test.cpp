@@ -207,6 +207,24 @@ TEST(CutRun, HalvesThatTouchAfterTheCutPartWithContact) {
   EXPECT_EQ(simulation.diagnostics().crossings, 0);
 }
 
+TEST(CutRun, BodiesOfOneMeshAreCutEachByItself) {
+  Scene two = hanging(square());
+  two.bodies.push_back(two.bodies[0]);
+  two.bodies[1].name = "lining";
+  two.bodies[1].translate = Vec3(0, 0, 0.1);
+  Simulation simulation = started(two);
+  simulation.cut("cloth", row(8));
+  simulation.cut("lining", row(4));
+  const Model& model = simulation.model();
+  const Mesh &cloth = model.body("cloth").mesh, &lining = model.body("lining").mesh;
+  EXPECT_EQ(cloth.vertex_count(), static_cast<std::size_t>((cells + 2) * (cells + 1)));
+  EXPECT_EQ(lining.vertex_count(), cloth.vertex_count());
+  // The copies come last: those of the cloth are where row 8 is, those of the lining where row 4 is.
+  EXPECT_DOUBLE_EQ(cloth.positions.back().y(), side * 8 / cells);
+  EXPECT_DOUBLE_EQ(lining.positions.back().y(), side * 4 / cells);
+  simulation.advance();
+}
+
 TEST(CutRun, RefusesWhatCannotBeCut) {
   Simulation simulation = started(hanging(square()));
   const auto complaint = [&](const std::string& body, std::vector<std::array<int, 2>> edges) -> std::string {

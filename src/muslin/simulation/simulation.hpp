@@ -71,11 +71,11 @@ class MUSLIN_API Simulation {
   /// became of it: cut() in muslin/topology says where vertices part and how new ones are numbered. Vertices
   /// keep their motion, pins what they hold; the energy of hinges that are gone counts as work. Contact
   /// forgets what stuck, and lets both sides of the cut pass until they have parted. Forces and energies that
-  /// a program added are dropped, and references to bodies and the model are no longer valid. A checkpoint
-  /// made from now on belongs to model(). Errors: usage, for a body that is no shell or a pair that is no
-  /// edge; input, where a pin or contact cannot go on.
+  /// a program added are dropped with what loads remember, and references to bodies and the model are no
+  /// longer valid. A checkpoint made from now on belongs to model(). Errors: usage, for a body that is no
+  /// shell or a pair that is no edge; input, where a pin or contact cannot go on.
   void cut(const std::string& body, std::span<const std::array<int, 2>> edges);
-  /// The same for any other model: its vertex v continues vertex origins[v] of the model so far. The
+  /// Goes on with any other model, whose vertex v continues vertex origins[v] of the model so far. The
   /// change of energy counts as work. Errors: usage, for another number of origins or one out of range;
   /// input, if surfaces would cross.
   void change_model(std::shared_ptr<const Model> model, std::span<const int> origins);

@@ -70,10 +70,12 @@ void refuse_other_crossings(const ContactModel& contact, ConstVectors x) {
     if (!share_a_corner(*contact.surface, points, crossing)) refuse_crossings(contact, x);
 }
 
-/// Opens edges of a mesh of the scene, which becomes one in memory.
-std::vector<int> cut_mesh(Scene& scene, std::string& path, std::span<const std::array<int, 2>> edges) {
+/// Opens edges of a mesh of the scene, which becomes one in memory: that of the body alone, as others may
+/// have the same file.
+std::vector<int> cut_mesh(Scene& scene, const std::string& body, std::string& path,
+                          std::span<const std::array<int, 2>> edges) {
   MeshCut halves = cut(scene_mesh(scene, path).mesh, edges);
-  path = fmt::format("{} (cut {})", path, halves.mesh.version);
+  path = fmt::format("{} ({}, cut {})", path, body, halves.mesh.version);
   scene.meshes[path] = std::make_shared<const Mesh>(std::move(halves.mesh));
   return std::move(halves.origins);
 }
@@ -95,6 +97,7 @@ void Simulation::change_model(std::shared_ptr<const Model> model, std::span<cons
   for (std::vector<Vec3>* values :
        {&motion.positions, &motion.velocities, &motion.previous_positions, &motion.previous_velocities})
     *values = gathered(*values, origins);
+  motion.history = {};
   if (model->contact && !impl.options.allow_tangled)
     refuse_other_crossings(*model->contact, motion.positions);
   const double before = energy();
@@ -118,11 +121,12 @@ void Simulation::cut(const std::string& body, std::span<const std::array<int, 2>
   const auto settings = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                      [&](const BodySettings& b) { return b.name == body; });
   const Component& before = model().body(body);
-  if (as_shell(before) == nullptr)
-    throw Error(ErrorKind::usage, fmt::format("\"{}\" is no shell, and only shells can be cut", body),
-                "give the name of a shell");
-  if (!settings->rest_mesh.empty()) cut_mesh(scene, settings->rest_mesh, edges);
-  const std::vector<int> cut_origins = cut_mesh(scene, settings->mesh, edges);
+  if (as_shell(before) == nullptr || settings == scene.bodies.end())
+    throw Error(ErrorKind::usage,
+                fmt::format("\"{}\" is no shell of the scene, and only these can be cut", body),
+                "give the name of a [[body]] that is a shell");
+  if (!settings->rest_mesh.empty()) cut_mesh(scene, body, settings->rest_mesh, edges);
+  const std::vector<int> cut_origins = cut_mesh(scene, body, settings->mesh, edges);
 
   auto next = std::make_shared<const Model>(build_model(scene));
   std::vector<int> origins;
