@@ -22,7 +22,7 @@ struct PotentialTerm {
   EnergyRole role = EnergyRole::elastic;
   std::shared_ptr<const Potential> potential;
 };
-/// The same of a load.
+/// A load of the vertices of one component, or of all vertices of a model.
 struct LoadTerm {
   std::string name;
   EnergyRole role = EnergyRole::work;

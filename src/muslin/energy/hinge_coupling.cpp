@@ -20,7 +20,7 @@ namespace {
 constexpr double ridge = 1e-3;
 // A hinge that is bent further at rest is a crease: the curvatures at its two sides have nothing in common.
 constexpr double crease = std::numbers::pi / 3;
-// Of the mean rigidity: the least that any curvature has, so that compliances are finite.
+// Every curvature has at least this share of the mean rigidity, so that compliances are finite.
 constexpr double least_rigidity = 1e-8;
 // Entries of K this small beside the diagonal are rounding.
 constexpr double rounding = 1e-12;
@@ -285,8 +285,8 @@ class Coupler {
                    turn[2] * Vec3(s[0] * n[0], s[1] * n[1], s[0] * n[1] + s[1] * n[0]));
   }
 
-  /// Of creases and of edges with three and more triangles, whose curvatures have nothing in common: the
-  /// division of least energy for given angles of the hinges.
+  /// Returns the division of least energy for given angles of the hinges. It serves creases and edges with
+  /// three and more triangles, whose curvatures have nothing in common.
   Vector least_energy_weights(const Edge& edge, const std::vector<Neighbour>& near) const {
     const auto n = static_cast<Eigen::Index>(near.size());
     Matrix compliance(n, n);

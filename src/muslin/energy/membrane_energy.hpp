@@ -42,7 +42,7 @@ class MembraneEnergy : public Elements<TriangleStencil, MembraneLaw> {
   /// `pattern` is the shell's block_pattern, or null. Errors: usage, if a modulus is out of its range.
   MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
                  std::shared_ptr<const SymmetricPattern> pattern = nullptr);
-  /// The same with moduli by triangle, #T.
+  /// Gives each triangle its own moduli, #T.
   MembraneEnergy(const Shell& shell, std::span<const MembraneModuli> moduli,
                  std::shared_ptr<const SymmetricPattern> pattern = nullptr);
 

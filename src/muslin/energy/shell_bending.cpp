@@ -9,8 +9,8 @@
 namespace muslin {
 namespace {
 
-// Of the stiffness of all hinges times dt² to the masses: up to this, Newton's method with the lumped matrix
-// takes at most a few iterations more, and linear iterations cost half (docs/notebook/bending.md).
+// Up to this ratio of the stiffness of all hinges times dt² to the masses, Newton's method with the lumped
+// matrix takes at most a few iterations more, and linear iterations cost half (docs/notebook/bending.md).
 constexpr double stiff = 16;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -53,7 +53,7 @@ MUSLIN_VECTOR_CODE void forces_of(const Batch<4>& x, const double* factor, Batch
       for (int l = 0; l < element_lanes; ++l) force[c][k][l] *= factor[l];
 }
 
-/// The same, and moment ∇²θ p.
+/// force = factor ∇θ + moment ∇²θ p
 MUSLIN_VECTOR_CODE void changes_of_forces(const Batch<4>& x, const double* factor, const double* moment,
                                           const Batch<4>& p, Batch<4>& force) {
   BentHinge h;

@@ -13,7 +13,7 @@
 
 namespace muslin {
 
-/// What fills the voxels of a lattice.
+/// The elements that fill the voxels of a lattice.
 enum class LatticeLaw {
   springs,
   neo_hookean,  ///< tetrahedra of a compressible Neo-Hookean solid

@@ -304,7 +304,7 @@ Declaration keyframes(std::string name, std::vector<T> S::* member, const Table&
   return Declaration(std::move(key));
 }
 
-/// The same key for settings that hold those it was declared for.
+/// Lifts a key to settings that hold, as a member, those it was declared for.
 template <class Outer, class Inner>
 Key within(Inner Outer::* member, Key key) {
   const auto inner = [member](const void* s) -> const void* {

@@ -18,8 +18,8 @@ namespace muslin::schema {
 /// The further keys of a table where its choosing key is `word`.
 struct Variant {
   std::string word;
-  /// What it makes, such as "shells". If given, a key of another variant is an error that says so; otherwise
-  /// it is an unknown key.
+  /// Names the things it makes, such as "shells". If given, a key of another variant is an error that says
+  /// so; otherwise it is an unknown key.
   std::string plural;
   const Table& (*table)();
 };
@@ -32,7 +32,7 @@ struct Table {
   std::size_t chooser = none;
   std::vector<Variant> variants;  ///< in the order of the chooser's choices
 
-  // Of the settings.
+  // These describe the settings that the keys are read into.
   const std::type_info* type = nullptr;
   std::shared_ptr<const void> blank;                   ///< with the defaults
   std::function<void(const Place&, void*)> set_place;  ///< null: the settings have no place
