@@ -10,12 +10,12 @@
 
 namespace muslin {
 
-/// Memory of the pins between steps: plain data, part of the state of a run. A value type: a failed step is
-/// repeated from a copy made before it. Starts empty.
+/// State of the pins between steps, part of the state of a run. It is a value type: a failed step is repeated
+/// from a copy made before it. Starts empty.
 struct Holds {
   std::vector<std::uint8_t> holding;  ///< #pins, 1 while the pin holds; empty before the first step
-  std::vector<Vec3> anchors;          ///< where the vertices were when their pin took hold, seen from their
-                                      ///< points if it has a sequence; all pins one after the other [m];
+  std::vector<Vec3> anchors;          ///< where the vertices were when their pin began, relative to their
+                                      ///< points if the pin has a sequence; all pins one after the other [m];
                                       ///< meaningful where the pin is holding
 
   template <class Self, class Arrays>
@@ -35,8 +35,8 @@ struct Holds {
   void step(std::span<const Pin> pins, double time_begin, double time_end, ConstVectors positions,
             std::span<std::uint8_t> fixed, Vectors targets);
 
-  /// Call when the vertices were set to `positions` from outside at `time`, the end of the last step: holding
-  /// pins hold them there, and move them from there.
+  /// Call when the vertices were set to `positions` from outside at `time`, the end of the last step: active
+  /// pins hold the vertices there and move them on from there.
   void reanchor(std::span<const Pin> pins, double time, ConstVectors positions);
 };
 

@@ -28,16 +28,16 @@ struct MUSLIN_API Motion {
 };
 
 /// Holds `vertices` from `from` until `until`: vertex v is at motion(t)·motion(from)⁻¹ applied to its
-/// position when the pin began. With a sequence it keeps instead the offset that it then had from the point
-/// of the sequence it follows.
+/// position when the pin began. With a sequence, v instead keeps the offset that it had at that time from the
+/// point it follows.
 struct Pin {
   std::string name;
   std::vector<int> vertices;                               ///< global vertex indices, ascending
   double from = 0;                                         ///< [s]
   double until = std::numeric_limits<double>::infinity();  ///< [s]
   Motion motion;
-  std::shared_ptr<const PointSequence> sequence = nullptr;  ///< null: `motion` decides
-  std::vector<int> points = {};  ///< #vertices: the point of the sequence each follows
+  std::shared_ptr<const PointSequence> sequence = nullptr;  ///< null: `motion` applies
+  std::vector<int> points = {};  ///< #vertices: the point of the sequence that each follows
 
   bool active(double time) const { return time >= from && time < until; }
 };

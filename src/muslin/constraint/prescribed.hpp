@@ -1,5 +1,5 @@
-// Prescribed vertices follow a function of time: those of colliders that stand, move along keyframes, or
-// follow the samples of an animation.
+// Prescribed vertices follow a function of time: they belong to colliders that are static, move along
+// keyframes, or follow the samples of an animation.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct MUSLIN_API Prescribed {
   int first = 0;
   std::vector<Vec3> start;  ///< at time 0 [m]
   Motion motion;
-  std::shared_ptr<const PointSequence> sequence;  ///< of as many points; null: `motion` decides
+  std::shared_ptr<const PointSequence> sequence;  ///< with #start points; null: `motion` applies
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();
 
   /// Computes the positions x of these vertices, #start by 3 [m].

@@ -1,5 +1,5 @@
 // ContactCandidates finds the candidate pairs: feature pairs that may touch while all points stay in their
-// boxes. They are kept for several iterations and used by contact energy and step limiter.
+// boxes. The candidates are kept for several iterations; contact energy and step limiter use them.
 #pragma once
 
 #include <array>
@@ -45,9 +45,9 @@ PairGeometry pair_geometry(const ContactSurface& surface, const ContactPair& pai
 
 class ContactCandidates {
  public:
-  /// `rest` (#P by 3, [m]): features of one body that are closer at rest than contact would keep them get a
-  /// smaller thickness and range, so that a body at rest is not in contact with itself. `contact_distance`:
-  /// d̂ [m]. Errors: usage, if it is not positive or sizes do not fit.
+  /// `rest` (#P by 3, [m]): features of one body that are closer at rest than thickness and range get smaller
+  /// ones, so that a body at rest is not in contact with itself. `contact_distance`: d̂ [m]. Errors: usage,
+  /// if it is not positive or sizes do not fit.
   ContactCandidates(std::shared_ptr<const ContactSurface> surface, ConstVectors rest,
                     double contact_distance);
 
@@ -55,13 +55,14 @@ class ContactCandidates {
   /// default none are excluded.
   void ignore_pairs(std::span<const std::array<int, 2>> triangles);
 
-  /// Finds the pairs that may come within range while all points move in straight lines from `begin` to `end`
-  /// (#P by 3, [m]) at the same pace, each within ± `margin` [m] along every axis. If no displacement exceeds
-  /// `long_way` [m], each point may be anywhere between, at any time; this is faster for short displacements.
+  /// Finds the pairs that may come within range while all points move linearly in time from `begin` to `end`
+  /// (#P by 3, [m]), each within ± `margin` [m] along every axis. If no displacement exceeds `long_way` [m],
+  /// each point may be anywhere between `begin` and `end` at any time; this search is faster for short
+  /// displacements.
   void update(ConstVectors begin, ConstVectors end, double margin,
               double long_way = std::numeric_limits<double>::infinity());
-  /// The same only for points whose `moved` (#P) is not zero, which may be anywhere between, at any time; the
-  /// others keep their boxes, and pairs without a moved point are unchanged.
+  /// Updates only pairs with a point whose `moved` (#P) is not zero. Such a point may be anywhere between
+  /// `begin` and `end` at any time; the others keep their boxes.
   void renew(std::span<const std::uint8_t> moved, ConstVectors begin, ConstVectors end, double margin);
 
   const ContactSurface& surface() const { return *surface_; }
@@ -72,7 +73,7 @@ class ContactCandidates {
   std::span<const float> least_distances() const { return least_distances_; }
   /// Positions at which those bounds hold, #P by 3 [m]: the `begin` of the last update.
   ConstVectors found_at() const { return found_at_; }
-  /// The boxes for which the pairs are complete, #P: all points have to be in theirs at the same time.
+  /// The boxes for which the pairs are complete, #P: all points must be in their boxes at the same time.
   const MovingBoxes& boxes() const { return boxes_; }
 
  private:

@@ -19,9 +19,9 @@ struct Law {
 ///   g > 0      ½ (d̂ − g)² d̂/g        slope −½ d̂ ((d̂/g)² − 1),   curvature (d̂/g)³
 ///   else       ∞
 ///
-/// Under a force of f springs pressed to the end the gap is about d̂/√(2f), and the curvature twice the force
-/// over the gap. A logarithmic barrier (Li et al., Incremental Potential Contact, 2020) lets the gap fall as
-/// 1/f: under a heavy load to values from which Newton's method, which can hardly more than double a gap,
+/// Under a force of f d̂ [N] the gap is about d̂/√(2f), and the curvature is twice the force over the gap.
+/// Under a logarithmic barrier (Li et al., Incremental Potential Contact, 2020) the gap falls as 1/f. A heavy
+/// load then makes the gap so small that Newton's method, whose steps can hardly more than double a gap,
 /// needs many iterations to recover (docs/theory/contact.md).
 inline Law contact_law(double gap, double range) {
   if (gap >= range) return {};

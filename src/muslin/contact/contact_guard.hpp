@@ -27,14 +27,14 @@ struct ContactCounts {
   double search_seconds = 0, limit_seconds = 0, potential_seconds = 0;
 };
 
-/// Throws Error(input) if `memory` belongs to other surfaces than the model's.
+/// Throws Error(input) if `memory` does not belong to the model's surfaces.
 void require_fit(const ContactMemory& memory, const ContactModel& model);
 
 class ContactGuard : public StepGuard {
  public:
   /// Continues from `memory` and writes to it; the next step gives the same bits as with the guard that wrote
-  /// it. The memory must outlive the guard and not be changed elsewhere. Errors: input, if it is of another
-  /// surface.
+  /// it. The memory must outlive the guard and must not be changed elsewhere. Errors: input, if it belongs to
+  /// another surface.
   ContactGuard(std::shared_ptr<const ContactModel> model, ContactMemory& memory);
 
   void begin(ConstVectors q, std::span<const std::uint8_t> held) override;
@@ -46,8 +46,8 @@ class ContactGuard : public StepGuard {
   void for_each_contact(const std::function<void(const Contact&)>& visit) const override;
   void end(ConstVectors q) override;
 
-  /// Excludes contact between the features of triangles that cross at q until these part. While some cross,
-  /// neighbours may begin to cross; once none does, nothing crosses again.
+  /// Excludes contact between the features of triangles that cross at q, until these triangles part. While
+  /// some pairs cross, neighbouring triangles may begin to cross; once no pair crosses, none can cross again.
   void allow_initial_intersections(ConstVectors q);
   /// Returns the number of excluded pairs of triangles that still cross.
   std::size_t tangled() const { return memory_.tangled.size(); }
@@ -76,7 +76,7 @@ class ContactGuard : public StepGuard {
   ContactCandidates candidates_;
   PairDistances distances_;
   StepLimiter limiter_;
-  double margin_;        ///< by which boxes of candidates are wider than the motion [m]
+  double margin_;        ///< by which boxes of candidates exceed the motion [m]
   double reach_ = 0;     ///< the same in the present displacement, including pushed vertices [m]
   double edge_;          ///< mean edge length of deformable bodies [m]
   double longest_;       ///< displacement that is limited in one piece [m]

@@ -22,11 +22,11 @@ struct ContactRow {
   Vec3 normal = Vec3::Zero();
   double normal_stiffness = 0;  ///< a ≥ 0 [N/m]
   double tangential = 0;        ///< b ≥ 0 [N/m]
-  /// Vertices with weights of their own, besides those of the points.
+  /// Further vertices with their weights, besides the points.
   std::span<const SurfaceMap::Entry> carried;
 };
 
-/// As a potential it is the quadratic ½ qᵀ H q.
+/// As a potential, this is the quadratic ½ qᵀ H q.
 class ContactHessian : public Potential {
  public:
   ContactHessian(const SurfaceMap& map, const std::vector<ContactRow>& rows);

@@ -1,4 +1,4 @@
-// ContactMemory keeps the contact state from step to step.
+// ContactMemory holds the contact state that persists from step to step.
 #pragma once
 
 #include <array>
@@ -17,7 +17,8 @@ struct ArrayElement<PairSlip> {
   static constexpr std::string_view layout = "u64 f64x3";
 };
 
-/// Contact keeps this between steps, besides positions: a run that continues with it gives the same bits.
+/// Together with the positions this is all that contact keeps between steps: a run that continues from it
+/// gives the same bits.
 struct ContactMemory {
   std::vector<PairSlip> slips;  ///< by ascending key
   std::vector<Vec3> begin,
@@ -26,7 +27,7 @@ struct ContactMemory {
   double smallest_gap =  ///< at the end of the last step [m]; infinite beyond d̂; −thickness
                          ///< where triangles cross
       std::numeric_limits<double>::infinity();
-  /// Pairs of triangles that still cross since an allowed tangled start; no contact between their features.
+  /// Pairs of triangles that have crossed since a tangled start; their features are not in contact.
   std::vector<std::array<int, 2>> tangled;
 
   template <class Self, class Arrays>

@@ -1,18 +1,18 @@
-// ContactPotential is contact and friction as a potential of the degrees of freedom q, surfaces being x = J
-// q:
+// ContactPotential is the potential of contact and friction in the degrees of freedom q, with surface points
+// x = J q:
 //
 //   W(q) = Σ kₜ b(dₜ(x) − thicknessₜ) + Σ μ λₚ f(|eₚ(x)|)
 //
 // The first sum runs over the terms of contact_terms.hpp; b and f are those of contact_energy.hpp, kₜ the
 // smaller stiffness of the two bodies times the term's coefficient.
 //
-// Friction's normal force λ, its normal and closest points are taken at the q the potential is made for, and
-// are then constant (lagged, as the friction of Li et al., Incremental Potential Contact, 2020): construct it
-// anew in each iteration. Friction has memory. e is the slip since contact began, cut to `stick_length`: a
-// spring while sticking, so that bodies at rest do not creep (bristle model; Haessig, Friedland 1991), and
-// the smoothed Coulomb force while slipping. A vertex that moves to the next triangle keeps its slip. The
-// slip over a round body is relative to its turning surface: the touching point of a ball is carried by the
-// ball's frame, as an affine combination of its four vertices.
+// The normal force λ, the normal and the closest points of friction are taken at the q for which the
+// potential is made and are then constant (lagged, as in Li et al., Incremental Potential Contact, 2020):
+// construct a new potential in each iteration. Friction has memory: e is the slip since contact began,
+// limited to `stick_length`. It acts as a spring while sticking, so that bodies at rest do not creep (bristle
+// model; Haessig, Friedland 1991), and as the smoothed Coulomb force while slipping. A vertex that moves to
+// the next triangle keeps its slip. The slip over a round body is relative to its rotating surface: the
+// touching point of a ball moves with the ball's frame, as an affine combination of its four vertices.
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ struct Friction {
 /// Slip of a sticking or sliding pair, by ContactPair::key(); part of the state of a run.
 struct PairSlip {
   std::uint64_t key = 0;
-  Vec3 slip = Vec3::Zero();  ///< of the first feature over the second, no longer than stick_length [m]
+  Vec3 slip = Vec3::Zero();  ///< of the first feature over the second, at most stick_length [m]
 };
 
 class ContactPotential : public Potential {
@@ -56,8 +56,8 @@ class ContactPotential : public Potential {
 
   double value(ConstVectors q) const override;
   void add_gradient(ConstVectors q, Vectors g) const override;
-  /// The positive curvatures k b″ n nᵀ and the secant of friction: positive semidefinite. The negative term
-  /// b′ ∂²d/∂x² is left out.
+  /// Adds the positive curvatures k b″ n nᵀ and the secant of friction, which are positive semidefinite. The
+  /// negative term b′ ∂²d/∂x² is left out.
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
   void linearize(ConstVectors q, HessianSink& into, std::size_t first) const override;
@@ -86,7 +86,7 @@ class ContactPotential : public Potential {
     Vec3 begin;                       ///< slip is the tangential part of Σ weights x + Σ carried q − begin
     int carried = -1;                 ///< which of carried_, −1: none
   };
-  /// Material points of those features that belong to rotating bodies.
+  /// Material points of features that belong to rotating bodies.
   struct Carried {
     std::array<SurfaceMap::Entry, 8> entries;
     std::size_t count = 0;

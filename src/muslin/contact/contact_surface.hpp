@@ -22,14 +22,14 @@ struct ContactBody {
   double radius = 0;         ///< half the thickness, or the radius of a sphere or capsule [m]
   bool self_contact = true;  ///< true if it touches itself
   bool fixed = false;        ///< a collider: two fixed bodies do not touch each other
-  /// Stiffness of a contact with this body [N/m]; a pair uses the smaller one. About 0.15 of the membrane's
-  /// Young's modulus × thickness for cloth; infinite where the other body decides.
+  /// Stiffness of a contact with this body [N/m]; a pair uses the smaller one. For cloth about 0.15 × Young's
+  /// modulus × thickness of the membrane; infinite if the other body's stiffness is to be used.
   double stiffness = 150;
-  /// For a body with a radius: the vertices of the degrees of freedom (not surface points) that carry it, at
-  /// the corners of a tetrahedron that has volume, from which friction gets the rotation of its surface. −1:
+  /// For a body with a radius: the four vertices (degrees of freedom, not surface points) that carry it,
+  /// corners of a tetrahedron that is not flat. Friction computes the rotation of the surface from them. −1:
   /// none.
   std::array<int, 4> frame = {-1, -1, -1, -1};
-  /// Coulomb's μ of this body; none: the common default. A pair uses the geometric mean.
+  /// Coulomb's μ of this body; none: the scene's default. A pair uses the geometric mean.
   std::optional<double> friction = std::nullopt;
   /// Above 0: the stiffness is 4 m/dt², which stops this mass within a step; `stiffness` is ignored [kg].
   double mass = 0;
@@ -37,10 +37,10 @@ struct ContactBody {
 
 /// An impenetrable half-space: gap = normal·(x − x_point). The plane moves with its point.
 struct ContactPlane {
-  int point = 0;                ///< of the surface, of a body of its own
+  int point = 0;                ///< of the surface; it is the plane's own body
   Vec3 normal = Vec3(0, 1, 0);  ///< outward, of length 1; unused for a turning plane
-  /// Two more points of that body, −1: none. With them the plane turns: it passes through the three, and its
-  /// outward side is that of (span[0] − point) × (span[1] − point).
+  /// Two more points of that body, −1: none. With them the plane turns: it passes through the three points,
+  /// and its outward normal is along (span[0] − point) × (span[1] − point).
   std::array<int, 2> span = {-1, -1};
   bool turns() const { return span[0] >= 0; }
 };
@@ -91,9 +91,9 @@ class ContactSurface {
     const double smaller = std::min(of(a), of(b)), larger = std::max(of(a), of(b));
     return (a.mass > 0) != (b.mass > 0) && std::isfinite(larger) ? std::sqrt(smaller * larger) : smaller;
   }
-  /// Returns Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that bodies of equal μ have that μ
-  /// between them, and a frictionless body slides on everything. `common` is the default μ of bodies without
-  /// their own.
+  /// Returns Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that two bodies of equal μ have
+  /// that μ between them, and a frictionless body slides on everything. `common` is the μ of bodies without
+  /// one.
   double friction(int point_a, int point_b, double common) const {
     const double a = body_at(point_a).friction.value_or(common),
                  b = body_at(point_b).friction.value_or(common);
@@ -101,7 +101,7 @@ class ContactSurface {
   }
   /// True for points of a codimensional triangle: the centre of a sphere, an end of a capsule's axis.
   bool is_round(int point) const { return round_triangle(point) >= 0; }
-  /// Returns that triangle, the first of several; −1: none.
+  /// Returns the first such triangle of a point; −1: none.
   int round_triangle(int point) const { return round_triangles_[static_cast<std::size_t>(point)]; }
   /// Return the triangles that share a point or an edge, ascending.
   std::span<const int> triangles_at_point(int p) const { return at_points_[static_cast<std::size_t>(p)]; }

@@ -1,23 +1,24 @@
-// Contact terms write contact energy as a sum over feature pairs that counts every contact of a vertex once.
+// Contact terms express the contact energy as a sum over feature pairs that counts every contact of a vertex
+// once.
 //
-// A vertex v meets a surface S at its distance d(v, S). The pairs of v with single triangles overlap: above an
-// edge v is as near to two triangles, above a corner to six. Inclusion and exclusion over the triangles T,
-// edges e and corners p of S removes double counting,
+// A vertex v meets a surface S at its distance d(v, S). The pairs of v with single triangles overlap: above
+// an edge v is equally near to two triangles, above a corner to six. Inclusion and exclusion over the
+// triangles T, edges e and corners p of S removes double counting,
 //
 //   W(v) = Σ_T b(d(v, T)) + Σ_e c_e b(d(v, e)) + Σ_p c_p b(d(v, p)),
 //   c_e = 1 − n_e,   c_p = 1 − n_p − Σ_{e ∋ p} c_e,
 //
 // n_e and n_p the numbers of triangles at e and p: −1 and 1 inside a manifold, 0 on its border. With ψ = −b′,
 // W(v) = ∫ ψ(r) χ(S ∩ B_r(v)) dr, χ the Euler characteristic of the part of S within r of v: 1 for a disc,
-// wherever its nearest point lies. All coefficients are constant, so that W is as smooth as b and distances
-// are: its gradient and Hessian are those of the terms.
+// wherever its nearest point lies. All coefficients are constant, so W is as smooth as b and the distances,
+// and its gradient and Hessian are the sums over the terms.
 //
-// The centre of a sphere is as near to many triangles of cloth that lies on it. There the vertices of the
-// cloth act first: contact of a round body inside faces and edges acts from half the range on.
+// The centre of a sphere is equally near to many triangles of a cloth that lies on it. There the vertices of
+// the cloth act first: contact of a round body with the inside of faces and edges begins at half the range.
 //
-// Two edges touch where both closest points are inside them; towards their ends and where they are parallel
-// vertex contacts take over, and the term fades. Only that factor is evaluated where the terms are made, and
-// constant from then on. docs/theory/contact.md.
+// Two edges touch where both closest points are inside them. Towards their ends, and where they are parallel,
+// the term fades and vertex contacts take over. Only the fading factor is lagged: it is evaluated where the
+// terms are made and constant from then on. docs/theory/contact.md.
 #pragma once
 
 #include <array>
@@ -36,7 +37,7 @@ struct ContactTerm {
   std::array<int, 4> points = {-1, -1, -1, -1};  ///< of the first feature, then of the second; −1: none
   int plane = -1;                                ///< of point_plane
   std::uint64_t key = 0;            ///< ContactPair::key() of its pair; 0 for subtracted edges and corners
-  double thickness = 0, range = 0;  ///< as those of ContactPair [m]
+  double thickness = 0, range = 0;  ///< as in ContactPair [m]
   double stiffness = 0;             ///< negative where it cancels double counting [N/m]
 
   int first_size() const { return kind == Kind::edge_edge ? 2 : 1; }
@@ -44,9 +45,9 @@ struct ContactTerm {
 
 PairGeometry term_geometry(const ContactSurface& surface, const ContactTerm& term, ConstVectors x);
 
-/// Returns all terms that are or may come into range near the points of `distances`: pairs whose gap is less
-/// than PairDistances::ranges_known ranges; rigid bodies are stopped within `dt` [s]. Terms of one vertex
-/// against one body are consecutive. Pairs without a gap are left out.
+/// Returns all terms that may be in range near the points of `distances`, of pairs whose gap is less than
+/// PairDistances::ranges_known times their range; rigid bodies are stopped within `dt` [s]. Terms of one
+/// vertex against one body are consecutive. Pairs without a gap are left out.
 std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt);
 
 /// The merged terms of one vertex with the same closest points.

@@ -1,5 +1,5 @@
-// Finds and describes crossings, positions from which contact cannot start: surfaces that cross, or are
-// closer than their thickness allows.
+// Finds and describes crossings, from which contact cannot start: surfaces that cross or are closer than
+// their thickness allows.
 #pragma once
 
 #include <cstddef>
@@ -29,19 +29,19 @@ struct Crossing {
   friend bool operator==(const Crossing&, const Crossing&) = default;
 };
 
-/// Returns the first `limit` crossings at q (#V by 3, [m]): triangles that meet in ascending order, then
-/// pairs that are too close, each pair of triangles once. Pairs of bodies that may not touch are left out.
-/// Errors: usage, if a position is not finite.
+/// Returns the first `limit` crossings at q (#V by 3, [m]): first triangles that meet, in ascending order,
+/// then pairs that are too close; each pair of triangles once. Pairs of bodies that may not touch are left
+/// out. Errors: usage, if a position is not finite.
 std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, std::size_t limit = 1000000);
 
-/// Returns the first crossing of each pair of faces. A polygon of the user's mesh is several triangles, so
-/// that two polygons may cross in several pairs of these.
+/// Returns the first crossing of each pair of faces. Two polygons of the user's mesh may cross in several
+/// pairs of their triangles.
 std::vector<Crossing> one_of_each_pair(const ContactModel& model, std::span<const Crossing> found);
 
 /// Returns one line, such as: face 12 of "cloth" crosses face 3 of "table" near (0.1, 0.2, 0.3) m.
 std::string describe(const ContactModel& model, const Crossing& crossing);
 
-/// Returns advice on removing them: move crossing bodies apart, or weld a mesh with coincident vertices.
+/// Returns advice on removing the crossings: move bodies apart, or weld a mesh with coincident vertices.
 std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found);
 
 /// Throws Error(input) at `place` that lists the first few crossings, if there are any.

@@ -21,7 +21,7 @@ namespace muslin {
 
 enum class PairKind { vertex_triangle, edge_edge, point_plane };
 
-/// Returns the number of the four points that belong to the first feature; the others belong to the second.
+/// Returns how many of the four points belong to the first feature; the others belong to the second.
 constexpr int first_feature_size(PairKind kind) { return kind == PairKind::edge_edge ? 2 : 1; }
 
 struct ClosestPoints {
@@ -45,7 +45,7 @@ inline double closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return length > 0 ? std::clamp(u.dot(p - a) / length, 0.0, 1.0) : 0.0;
 }
 
-/// Vertex p and triangle a b c.
+/// Returns the closest points of vertex p and triangle a b c.
 inline ClosestPoints closest_vertex_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - a, v = c - a, w = p - a;
   const Vec3 normal = u.cross(v);
@@ -70,7 +70,8 @@ inline ClosestPoints closest_vertex_triangle(const Vec3& p, const Vec3& a, const
   return {to_ca, d_ca, {1, -ca, 0, -(1 - ca)}};
 }
 
-/// Edges a₀ a₁ and b₀ b₁. Parallel edges give the nearest end point, one of them if several are.
+/// Returns the closest points of edges a₀ a₁ and b₀ b₁. For parallel edges one of the nearest end points is
+/// used.
 inline ClosestPoints closest_edge_edge(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
   const Vec3 u = a1 - a0, v = b1 - b0, r = a0 - b0;
   const Vec3 normal = u.cross(v);

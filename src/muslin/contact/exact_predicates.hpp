@@ -4,7 +4,7 @@
 // A floating-point filter with a proven error bound decides nearly always; otherwise the determinant is
 // computed as an expansion, an exact sum of doubles (Shewchuk, Adaptive Precision Floating-Point Arithmetic
 // and Fast Robust Geometric Predicates, 1997). Coordinates so large or small that an expansion could overflow
-// or underflow are compared in integers of any length.
+// or underflow are evaluated with integers of any length.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // Provides exact sums of doubles for exact_predicates.cpp. An expansion is a number written as a sum of
-// doubles that do not overlap, smallest first (Shewchuk 1997): its sign is that of its last term. Exact as
-// long as nothing overflows or underflows.
+// doubles that do not overlap, smallest first (Shewchuk 1997): its sign is that of its last term. It is exact
+// unless a term overflows or underflows.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ using LaneBits = std::uint64_t;
 inline int first_lane(LaneBits bits) { return std::countr_zero(bits) / 8; }
 inline LaneBits lanes_after(int lane) { return ~LaneBits{0} << 7 << (8 * lane + 1); }
 
-/// A box at the beginning and at the end; without motion only the first counts.
+/// A box at the beginning and at the end of a motion; without motion only the first is used.
 struct MovingBox {
   FloatBox ends[2];
 };

@@ -1,6 +1,5 @@
-// MovingBoxes bounds the points of a surface: each in a box that moves in a straight line from its beginning
-// to its end, all at the same pace. Features that move together stay separated in such boxes, where boxes
-// around whole displacements would overlap.
+// MovingBoxes bounds every point of a surface by a box that moves linearly in time. Features that move
+// together stay separated in such boxes, while boxes around whole displacements would overlap.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +28,7 @@ class MovingBoxes {
   }
 
   std::size_t size() const { return boxes_[0].size(); }
-  /// Call before setting all boxes anew.
+  /// Call before setting all boxes.
   void restart() { moving_ = false; }
   /// Point p moves from `from` to `to`, ± `margin` [m].
   void move(std::size_t p, const Vec3& from, const Vec3& to, double margin) {
@@ -37,7 +36,7 @@ class MovingBoxes {
     boxes_[0][p] = {from.array() - margin, from.array() + margin};
     boxes_[1][p] = {to.array() - margin, to.array() + margin};
   }
-  /// Point p is anywhere between, at any time.
+  /// Point p may be anywhere between `from` and `to` at any time, ± `margin` [m].
   void stay(std::size_t p, const Vec3& from, const Vec3& to, double margin) {
     boxes_[0][p] = {from.cwiseMin(to).array() - margin, from.cwiseMax(to).array() + margin};
     boxes_[1][p] = boxes_[0][p];

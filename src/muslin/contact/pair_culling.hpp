@@ -1,6 +1,6 @@
-// PairCulling finds the feature pairs that may come close while their points move with boxes. A plane across
-// the closest points of a pair rules most of them out. In float, eight pairs at once; conservative: errors
-// only keep a pair.
+// PairCulling finds the feature pairs that may come close while their points move with boxes. A separating
+// plane between the closest points of a pair rules most pairs out. It works in float, on eight pairs at once,
+// and is conservative: rounding can only keep a pair.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace muslin {
 
 class PairCulling {
  public:
-  /// Sets each point with its box (#P); planes are laid across the closest points at `at` (#P by 3, [m]).
+  /// Sets each point with its box (#P); the planes separate the closest points at `at` (#P by 3, [m]).
   void set_points(const ContactSurface& surface, ConstVectors at, const MovingBoxes& boxes);
   /// Sets only the boxes of points whose `moved` (#P) is not zero.
   void set_boxes(std::span<const std::uint8_t> moved, const MovingBoxes& boxes);

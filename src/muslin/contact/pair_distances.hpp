@@ -3,7 +3,7 @@
 //
 // Most candidates are far apart, and remain so while points move: a pair that was d apart when it was found
 // is at least d − max |δᵢ − δⱼ| apart now, over the displacements δ of the points i of one feature and j of
-// the other since then. The closest points are found only where this bound is not enough.
+// the other since then. The closest points are computed only where this bound does not suffice.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace muslin {
 
 class PairDistances {
  public:
-  /// The geometry is known of all pairs whose gap is less than this share of the contact distance.
+  /// The geometry is known for all pairs whose gap is less than this multiple of the contact distance.
   static constexpr double ranges_known = 1.5;
 
   /// `candidates` must outlive this.
@@ -25,7 +25,7 @@ class PairDistances {
 
   /// Updates to points x (#P by 3, [m]); does nothing if x is unchanged.
   void update(ConstVectors x);
-  /// Call when the candidates have changed: the next update starts anew.
+  /// Call when the candidates have changed: the next update recomputes all pairs.
   void forget() { x_.clear(); }
 
   const ContactCandidates& candidates() const { return *candidates_; }
@@ -37,8 +37,8 @@ class PairDistances {
   /// Computes the geometry of pair i if not known; several threads may call it, each for its own pairs.
   const PairGeometry& find(std::size_t i);
 
-  /// Returns the smallest gap of all pairs, if it is below the contact distance: then it is that of the whole
-  /// surface; infinite otherwise [m].
+  /// Returns the smallest gap of all pairs [m]; infinity if it is not below the contact distance. A gap below
+  /// the contact distance is the smallest one of the whole surface.
   double smallest_gap() const;
 
  private:

@@ -5,7 +5,7 @@
 // (van den Bergen 1997). Leaves hold eight triangles, whose boxes are compared in vector code. Boxes are in
 // float, rounded outwards. Pairs of leaves come from traversing the tree against itself; features come from
 // pairs of triangles by ownership (Curtis, Tamstorf, Manocha, Fast Collision Detection for Deformable Models
-// using Representative-Triangles, 2008), so that each pair of features comes once.
+// using Representative-Triangles, 2008), so that each pair of features is found once.
 #pragma once
 
 #include <cstddef>
@@ -46,9 +46,10 @@ class PairSearch {
   PairSearch& operator=(PairSearch&&) noexcept;
 
   /// Finds all pairs that can come within radius + radius + `reach` [m] of each other while every point stays
-  /// in its box (#P), at the same time of their motion; and some more, as boxes only bound the features.
-  /// `found` is overwritten; its memory is reused. `moved` (#P, or empty for all points): only pairs with a
-  /// point where this is not zero; the boxes of the others, and `reach`, are those of the last search.
+  /// in its box (#P), all boxes moving at the same time. Some further pairs are found, since boxes only bound
+  /// the features. `found` is overwritten; its memory is reused. `moved` (#P, or empty for all points): only
+  /// pairs with a point where this is not zero are found; the boxes of the other points, and `reach`, must be
+  /// the same as in the last search.
   void find(const MovingBoxes& boxes, double reach, FeaturePairs& found,
             std::span<const std::uint8_t> moved = {});
 

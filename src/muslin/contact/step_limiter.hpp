@@ -29,7 +29,7 @@ struct StepLimits {
   double gap_floor = 1e-5;
   /// Least share of its gap that a pair keeps, so that contact is not far stiffer at the end of a step.
   double kept_share = 0;
-  /// #V, 1 for kinematic vertices: others give way to them. Empty: none.
+  /// #V, 1 for kinematic vertices: others give way to these. Empty: none.
   std::vector<std::uint8_t> prescribed;
   /// #V, vertices of the same number ≥ 0 are shortened together, −1: alone. Empty: all alone. For rigid
   /// bodies.
@@ -50,10 +50,10 @@ class StepLimiter {
   StepLimiter(std::shared_ptr<const SurfaceMap> map, StepLimits limits);
 
   /// Changes the step `dq` (#V by 3, [m]) from q such that, on the whole straight path to q + dq, no
-  /// candidate pair comes closer than its thickness + gap floor, or, if it is closer than that at q, any
-  /// closer. `at` are the distances at J q, which must lie in the boxes of the candidates; missing ones are
-  /// computed. Pairs at distance zero are ignored. `held`, #V or none: vertices that others give way to in
-  /// this step, instead of those prescribed.
+  /// candidate pair comes closer than its thickness + gap floor; a pair that is closer than that at q does
+  /// not come closer. `at` holds the distances at J q, which must lie in the boxes of the candidates; missing
+  /// ones are computed. Pairs at distance zero are ignored. `held`, #V or none: vertices that others give way
+  /// to in this step, instead of those prescribed.
   LimitReport limit(PairDistances& at, Vectors dq, std::span<const std::uint8_t> held = {}) const;
 
  private:

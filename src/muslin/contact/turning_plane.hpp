@@ -4,7 +4,7 @@
 //
 //   d = n·(x − a),   ∂d/∂xᵢ = wᵢ n,   w = (1, −(1 − s − t), −s, −t),
 //
-// s and t being those of the foot of x in the plane, a + s (b − a) + t (c − a): as for an unbounded triangle.
+// where a + s (b − a) + t (c − a) is the foot of x in the plane, as for an unbounded triangle.
 #pragma once
 
 #include <array>

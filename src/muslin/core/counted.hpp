@@ -12,7 +12,7 @@ inline std::string counted(std::size_t count, const std::string& one, const std:
   text += count == 1 ? one : many;
   return text;
 }
-/// Returns the same with a plural in s.
+/// Returns the count with a regular plural: `one` + "s".
 inline std::string counted(std::size_t count, const std::string& one) {
   std::string many = one;
   many += 's';

@@ -1,4 +1,4 @@
-// DisjointSets joins numbered things to sets (union-find).
+// DisjointSets is a union-find over the elements 0 … count − 1.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// Sets of 0 … count − 1, each thing in one of its own at first. The lowest of a set represents it.
+/// At first every element is a set by itself. The smallest element of a set represents it.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0); }
@@ -21,7 +21,7 @@ class DisjointSets {
     a = find(a), b = find(b);
     above(std::max(a, b)) = std::min(a, b);
   }
-  /// Returns find(thing) of each.
+  /// Returns the representative of every element.
   std::vector<int> find_all() {
     std::vector<int> all(above_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = find(static_cast<int>(i));

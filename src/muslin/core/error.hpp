@@ -1,4 +1,4 @@
-// Error reports failures due to input, files or numbers, with a remedy for the user. Bugs of our own are
+// Error reports failures due to input, files or numbers, with a remedy for the user. Bugs in muslin are
 // asserts, not Errors.
 #pragma once
 

@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// Returns all bytes of a regular file of at most `max_bytes`. Never waits for a pipe nor reads a device.
+/// Returns all bytes of a regular file of at most `max_bytes`. Never waits for a pipe or reads a device.
 /// Errors: file, with the system's message.
 std::string read_file(const std::filesystem::path& path,
                       std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max());

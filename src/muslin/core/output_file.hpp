@@ -1,4 +1,4 @@
-// Writes files and checks every result, that of closing included.
+// Writes files and checks the result of every system call, including close.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ class MUSLIN_API OutputFile {
 };
 
 /// A file that appears under its name only when it is complete: it is written as NAME.part beside it and
-/// renamed. A link is followed; other than regular files are refused. Errors: file.
+/// renamed. A link is followed; files that are not regular are refused. Errors: file.
 class MUSLIN_API WholeFile {
  public:
   explicit WholeFile(std::filesystem::path path);
@@ -63,7 +63,7 @@ class MUSLIN_API WholeFile {
 };
 
 /// Writes to a temporary file beside `path` and renames it: readers see the old content or the new, never a
-/// part. With `durable` the new content is on the disk before the old is gone.
+/// part. With `durable` the new content is on the disk before the old one is removed.
 MUSLIN_API void write_atomically(const std::filesystem::path& path, std::string_view content,
                                  bool durable = true);
 

@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// Returns Error(file) "PATH: cannot ACTION: REASON; remedy" for an errno.
+/// Returns Error(file) "PATH: cannot ACTION: REASON; remedy"; `code` is an errno.
 Error system_error(const std::filesystem::path& path, const std::string& action, int code);
 
 }  // namespace muslin

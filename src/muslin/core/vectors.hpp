@@ -1,4 +1,5 @@
-// Defines the vector types shared by all parts. Lengths are metres, y is up, unless a comment says otherwise.
+// Defines the vector types that all folders share. Lengths are in metres and y is up unless a comment says
+// otherwise.
 #pragma once
 
 #include <span>

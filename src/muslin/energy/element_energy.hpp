@@ -1,5 +1,5 @@
-// Declares the interface of elastic energies of elements, with four kinds of stiffness, and damping made from
-// one of them.
+// ElementEnergy is the interface of elastic energies of elements, with four kinds of stiffness.
+// ElementDamping is the damping made from one of them.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@ namespace muslin {
 
 /// Selects a part of ∂²W/∂x². With W = ½ k s(x)², s a strain or an angle, it is k ∇s∇sᵀ + k s ∇²s.
 enum class Stiffness {
-  material,   ///< the first term alone: resists changes of strain; positive semidefinite
-  projected,  ///< and the tensile part of the second, without buckling; positive semidefinite
+  material,   ///< the first term only: resists changes of strain; positive semidefinite
+  projected,  ///< the first term and the tensile part of the second, without buckling; positive semidefinite
   bounded,    ///< as projected, and for membranes as much buckling as the masses allow; matrices only
   exact,      ///< both
 };
@@ -42,11 +42,11 @@ class ElementEnergy : public Potential {
   }
   /// Adds `scale` K, or `scale` A as above, to the blocks of a matrix of pattern(); `kind` is not exact. With
   /// `bounded`, M + scale K is at least a tenth of M, the diagonal of `masses` (#V, read only then), in every
-  /// direction; of the laws only the membrane's uses the masses.
+  /// direction; only the membrane's law uses the masses.
   virtual void add_stiffness_matrix(Stiffness kind, ConstVectors x, double scale,
                                     std::span<const double> masses, PairBlocks blocks) const = 0;
-  /// Adds `factor` K, or `factor` A as above, to a linear system, W being of the vertices first, first + 1,
-  /// …; `kind` is not exact. Needs a pattern.
+  /// Adds `factor` K, or `factor` A as above, to a linear system in which the energy's vertices are numbered
+  /// first, first + 1, …; `kind` is not exact. Needs a pattern.
   virtual void linearize_stiffness(Stiffness kind, ConstVectors x, double factor, HessianSink& into,
                                    std::size_t first) const;
   /// Returns the pattern, if given; without it the inner solver computes products from x.
@@ -55,7 +55,7 @@ class ElementEnergy : public Potential {
   void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override;
 
  private:
-  /// The same energy with the projected Hessian.
+  /// This energy with the projected Hessian.
   class Projected : public Potential {
    public:
     explicit Projected(const ElementEnergy& energy) : energy_(energy) {}

@@ -24,7 +24,7 @@ inline constexpr int element_lanes = 8;
 template <int N>
 using Batch = double[N][3][element_lanes];
 
-/// The share of the masses that a stiffness may use: see Stiffness::bounded.
+/// The masses that a stiffness may use: see Stiffness::bounded.
 struct MassBound {
   double scale = 1;
   double held[element_lanes] = {};  ///< by lane [kg]
@@ -96,8 +96,8 @@ class ElementSlabs {
     });
   }
 
-  /// As for_each_batch; returns the sum of batch(first, count, owned, slab), which must be that of the first
-  /// `owned` entries only, so that each element counts once.
+  /// As for_each_batch; returns the sum of batch(first, count, owned, slab). A call must return the sum over
+  /// its first `owned` entries only, so that each element counts once.
   template <class Body>
   double sum_of_batches(const Body& batch) const {
     return parallel_sum(slabs_.size(), 1, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -159,8 +159,8 @@ class ElementSlabs {
     }
   }
 
-  /// Returns by entry the blocks of the pairs of corners i ≤ j, (0,0), (0,1), …, (1,1), …; ~block where i is
-  /// the later vertex, so that the block is of row j and column i.
+  /// Returns, by entry, the blocks of the pairs of corners i ≤ j in the order (0,0), (0,1), …, (1,1), …;
+  /// ~block where corner i has the higher vertex index, so that the block has row j and column i.
   static constexpr int pair_count = N * (N + 1) / 2;
   using Slots = std::array<int, pair_count>;
   std::vector<Slots> slots(const SymmetricPattern& pattern) const {

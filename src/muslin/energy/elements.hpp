@@ -3,8 +3,9 @@
 //   W = Σ weight ψ(measure),
 //
 // and everything that does not depend on the law: loops over elements, gathering of corners, products,
-// blocks. The stencil knows the measure of an element, its derivatives by the corners, and how to use those
-// of ψ; it has for every law, over the lanes of a batch,
+// blocks. The stencil computes the measure of an element and its derivatives with respect to the corners, and
+// combines them with the derivatives of ψ. For every law it provides these functions over the lanes of a
+// batch:
 //
 //   energies, forces         false where no element of the batch stores energy
 //   stiffen                  the stiffness of a kind at x, from which the following compute

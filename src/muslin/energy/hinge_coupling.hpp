@@ -1,5 +1,5 @@
-// HingeCoupling is a plate on the triangles of a shell, as a constant matrix K between the angles of its
-// hinges: the energy ½ dᵀ K d with d = θ − θ₀ is that of the plate
+// HingeCoupling models a plate on the triangles of a shell by a constant matrix K between the angles of its
+// hinges: ½ dᵀ K d with d = θ − θ₀ is the energy of the plate
 //
 //   W = Σ ½ A κ:D:κ,   κ = (1/A) Σ l α n⊗n   (a triangle's sides of length l and outward normal n)
 //
@@ -47,8 +47,8 @@ struct HingeCoupling {
 };
 
 /// Couples the hinges of `shell`. A triangle whose vertices are all in `held` (#V, or empty) is a clamp: the
-/// sheet's normal at its edges is its own. Errors: usage, if a modulus is negative, |ν| ≥ 1, or the bias too
-/// low.
+/// sheet's normal at its edges is the triangle's normal. Errors: usage, if a modulus is negative, |ν| ≥ 1, or
+/// the bias too low.
 HingeCoupling couple_hinges(const Shell& shell, const BendingModuli& moduli,
                             std::span<const std::uint8_t> held = {});
 

@@ -43,7 +43,7 @@ MUSLIN_INLINE double dot_lanes(const LaneVector& p, const LaneVector& q, int l) 
   return p[0][l] * q[0][l] + p[1][l] * q[1][l] + p[2][l] * q[2][l];
 }
 
-/// A hinge and the gradient of its angle: −u on the wings, balanced by that on the edge's ends.
+/// A hinge and the gradient of its angle: −u on the wings, balanced by the gradient at the edge's ends.
 struct BentHinge {
   LaneVector e, f, g;  // edge and wings from vertex 0
   LaneVector n1, n2;   // twice the triangles' areas along their normals

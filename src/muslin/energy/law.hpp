@@ -1,4 +1,4 @@
-// A law says how an element resists its own measure: the metric of a triangle, the angle of a hinge, the
+// A law states how an element resists its measure: the metric of a triangle, the angle of a hinge, the
 // deformation of a tetrahedron. It is a struct without data:
 //
 //   Constants     doubles only, derived from the parameters once for each element
@@ -27,7 +27,7 @@ struct LawParameter {
   std::string_view unit;
   double least = 0;
   double most = std::numeric_limits<double>::infinity();
-  bool open = false;  ///< least and most are not allowed themselves
+  bool open = false;  ///< the bounds themselves are excluded
   std::string_view sentence;
 
   bool allows(double value) const {
@@ -35,12 +35,12 @@ struct LawParameter {
   }
 };
 
-/// One number of every element, by entry of ElementSlabs. Equal numbers are stored as one batch, which is
-/// read again and again.
+/// One number per element, by entry of ElementSlabs. If all are equal, one batch is stored and read for every
+/// element.
 class LaneArray {
  public:
   LaneArray() = default;
-  /// `values` as of ElementSlabs::by_entry.
+  /// `values` come from ElementSlabs::by_entry.
   explicit LaneArray(std::vector<double> values);
   /// The numbers of entries first, first + 1, …, for one batch.
   const double* at(int first) const { return values_.data() + (uniform_ ? 0 : first); }

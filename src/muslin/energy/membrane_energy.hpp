@@ -11,8 +11,8 @@
 //   dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db + b·da)).
 //
 // The exact Hessian adds the geometric stiffness S ⊗ I to the material one; the projected one takes the
-// positive semidefinite part of S there, the bounded one that and as much of the rest as the triangle's share
-// of the masses holds. docs/theory/shells.md.
+// positive semidefinite part of S there, the bounded one adds as much of the negative part as the triangle's
+// share of the masses can balance (docs/theory/shells.md).
 #pragma once
 
 #include <memory>
@@ -32,7 +32,7 @@ struct MembraneModuli {
   double warp = 0;     ///< K_u ≥ 0 [N/m]: Young's modulus × thickness along warp
   double weft = 0;     ///< K_v ≥ 0 [N/m]
   double shear = 0;    ///< G ≥ 0 [N/m]: force per width and radian
-  double poisson = 0;  ///< ν, the geometric mean of the two, −1 < ν < 1
+  double poisson = 0;  ///< ν, geometric mean of both directions, −1 < ν < 1
 };
 
 extern template class Elements<TriangleStencil, MembraneLaw>;

@@ -3,9 +3,9 @@
 //   ψ = μ/2 (I_C − 3) − μ/2 ln((I_C + 1)/4) + λ/2 (J − 1)² − 3/4 μ (J − 1)   [J/m³],
 //
 // I_C = tr FᵀF, J = det F: the stable form of Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation
-// (2018), less a constant. ψ is smooth and finite for every F, also of flat and inverted elements, and
-// nothing but the rest shape is a minimum: without the logarithm, an element shrunk to a point would stay so.
-// Hence no step needs a limit. With
+// (2018), less a constant. ψ is smooth and finite for every F, flat and inverted elements included, and the
+// rest shape is its only minimum: without the logarithm, an element shrunk to a point would stay there. Hence
+// no step needs a limit. With
 //
 //   μ = 4/3 G,   λ = L + 5/6 G,   G = E / (2 (1 + ν)),   L = 2 G ν / (1 − 2ν)
 //

@@ -1,10 +1,11 @@
-// PlasticHinges is the bending of a shell that stays bent where it is folded too far, as paper, foil or a
-// crease. Each hinge remembers its plastic angle and its slip (potential/history.hpp). Unlike those of
-// ShellBending its hinges are not coupled:
+// PlasticHinges models the bending of a shell that keeps a fold, such as paper or foil. Each hinge stores its
+// plastic angle and its slip (potential/history.hpp). Unlike the hinges of ShellBending these are not
+// coupled:
 //
 //   W = Σ ψ(w(θ − θ₀)),   ψ'' = D l² / (A₁ + A₂) below the yield angle   [N·m]
 //
-// l the edge and A₁, A₂ the triangles at rest, and D the rigidity across the edge, at the angle φ from warp
+// with l the length of the edge and A₁, A₂ the areas of the triangles at rest, and D the rigidity for bending
+// across the edge, at the angle φ from warp,
 //
 //   D = D_warp cos⁴φ + D_weft sin⁴φ + (4 D_bias − D_warp − D_weft) cos²φ sin²φ.
 //
@@ -34,8 +35,8 @@ extern template class Elements<HingeStencil, PlasticHingeLaw>;
 
 class PlasticHinges : public Load {
  public:
-  /// `name` is unique among the loads of a run and names what the hinges remember. `pattern` is the shell's
-  /// block_pattern, or null. Errors: usage, if a modulus or the limit is negative.
+  /// `name` is unique among the loads of a run and names the hinges' arrays in the history. `pattern` is the
+  /// shell's block_pattern, or null. Errors: usage, if a modulus or the limit is negative.
   PlasticHinges(std::string name, const Shell& shell, const BendingModuli& moduli, const YieldLimit& limit,
                 std::shared_ptr<const SymmetricPattern> pattern = nullptr);
   ~PlasticHinges() override;

@@ -1,4 +1,4 @@
-// PressureEnergy is what a gas does inside a closed surface,
+// PressureEnergy is the potential of a gas inside a closed surface,
 //
 //   W = −∫ p dV.
 //
@@ -7,12 +7,12 @@
 //
 //   p = (p_a + p₀) V₀/V − p_a,   W = −(p_a + p₀) V₀ ln(V/V₀) + p_a (V − V₀).
 //
-// Below a hundredth of V₀, p goes on along its tangent, so that W is finite even where a surface turns inside
-// out. The Hessian is −p ∇²V − p' ∇V ∇Vᵀ: blocks along the edges, and one rank-one term.
+// Below a hundredth of V₀, p continues along its tangent, so that W is finite even for a surface turned
+// inside out. The Hessian is −p ∇²V − p' ∇V ∇Vᵀ: blocks along the edges, and one rank-one term.
 //
 // The blocks of the linear system are the positive part of −p ∇²V, edge by edge. An edge couples its ends by
-// the block K = −p [e]ₓ/6, e between the corners on both sides, so that the positive part is ½ K beside ½
-// |p||e|/6 (1 − ê êᵀ) on both ends. The centre of a hole counts as fixed there.
+// the block K = −p [e]ₓ/6, where e joins the corners opposite to the edge. The positive part is ½ K between
+// the ends and ½ |p||e|/6 (1 − ê êᵀ) at both ends. The centre of a hole counts as fixed there.
 #pragma once
 
 #include <functional>
@@ -61,7 +61,7 @@ class PressureEnergy : public Potential {
 /// A gas that changes over time.
 class Pressure : public Load {
  public:
-  /// Returns the gas of a step from `begin` to `end` [s]; none: nothing acts.
+  /// Returns the gas in a step from `begin` to `end` [s]; none if no pressure acts.
   using GasOfStep = std::function<std::optional<Gas>(double begin, double end)>;
   Pressure(std::shared_ptr<const EnclosedVolume> surface, GasOfStep gas);
   std::unique_ptr<Potential> potential(const StepContext& step) const override;

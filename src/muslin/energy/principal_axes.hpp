@@ -105,8 +105,8 @@ MUSLIN_INLINE void cut_negative(LaneMatrix& a) {
       }
 }
 
-/// f = u diag(sigma) vᵀ with rotations u and v, sigma₁ ≥ sigma₂ ≥ |sigma₃|, which has the sign of det f. Also
-/// of matrices of lower rank.
+/// f = u diag(sigma) vᵀ with rotations u and v and sigma₁ ≥ sigma₂ ≥ |sigma₃|; sigma₃ has the sign of det f.
+/// Works for matrices of lower rank too.
 MUSLIN_INLINE void principal_axes(const LaneMatrix& f, LaneMatrix& u, double (&sigma)[3][element_lanes],
                                   LaneMatrix& v) {
   LaneMatrix a;

@@ -6,7 +6,7 @@
 // the constant matrix of a plate with the rigidities given (energy/hinge_coupling.hpp). Rigid motions store
 // nothing at any rest shape. The projected stiffness is the material one, Jᵀ K J with J = ∂θ/∂x. The blocks
 // and matrices of a hinge's own vertices are those of Jᵀ Λ J, Λ diagonal and K ≤ 2 Λ; linear systems get the
-// difference as coupled forms where the sheet is stiff beside its masses. A triangle without area has no
+// difference as coupled forms where the sheet is stiff relative to its masses. A triangle without area has no
 // bending direction and exerts no force.
 #pragma once
 
@@ -26,9 +26,8 @@ namespace muslin {
 
 class ShellBending : public ElementEnergy {
  public:
-  /// `pattern` is the shell's block_pattern, or null. `held` (#V, or empty): not 0 where a vertex does not
-  /// move but as a pin moves it. Triangles of held vertices clamp the sheet at their edges. Errors: those of
-  /// couple_hinges.
+  /// `pattern` is the shell's block_pattern, or null. `held` (#V, or empty) is not 0 where a pin holds or
+  /// moves a vertex. Triangles of held vertices clamp the sheet at their edges. Errors: as couple_hinges.
   ShellBending(const Shell& shell, const BendingModuli& moduli,
                std::shared_ptr<const SymmetricPattern> pattern = nullptr,
                std::span<const std::uint8_t> held = {});
@@ -51,7 +50,7 @@ class ShellBending : public ElementEnergy {
   std::vector<double> deviations(ConstVectors x) const;
   /// Returns J p.
   std::vector<double> changes(ConstVectors x, ConstVectors p) const;
-  /// Tells whether `scale` K is so large beside the masses that linear systems need more than Λ.
+  /// Returns true if `scale` K is so large relative to the masses that linear systems need more than Λ.
   bool is_stiff(double scale, std::span<const double> masses, std::span<const std::uint8_t> fixed) const;
   void load(std::span<const double> of_hinge, int first, int count, double* lanes) const;
   /// Adds `scale` Jᵀ Λ J to `blocks`; sets J, four vectors a hinge, unless null.

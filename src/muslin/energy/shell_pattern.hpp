@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// Returns the couplings of a shell: of vertices in a triangle or a hinge.
+/// Returns the pairs of vertices that share a triangle or a hinge.
 std::shared_ptr<const SymmetricPattern> block_pattern(const Shell& shell);
 
 }  // namespace muslin

@@ -49,8 +49,7 @@ class SpringEnergy : public Potential {
     const double k = types_[static_cast<std::size_t>(direction)].stiffness;
     return weights_.empty() ? k : k * static_cast<double>(weights_[static_cast<std::size_t>(index)]);
   }
-  /// Returns rest length and `factor` k of consecutive springs of a direction, the first of them in this
-  /// slot.
+  /// Returns rest length and `factor` k of consecutive springs of a direction, beginning at this slot.
   SpringType type(int direction, std::int64_t slot, double factor = 1) const {
     const Type& type = types_[static_cast<std::size_t>(direction)];
     return {factor * type.stiffness, type.rest,

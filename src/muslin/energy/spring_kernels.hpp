@@ -23,7 +23,7 @@ struct SpringType {
   const float* weight = nullptr;  ///< null: all 1
 };
 
-/// Forces are computed for so many springs at most.
+/// The largest number of springs in one call.
 inline constexpr int max_springs = 1024;
 
 /// Return the distance between columns of n entries [entries], and this thread's memory for columns, valid

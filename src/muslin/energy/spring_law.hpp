@@ -1,5 +1,5 @@
 // SpringLaw is a linear spring between two points, and DashpotLaw a dashpot along it. Their measure is the
-// vector z from one end to the other. A force is f v with v = z, a product with d the change of the force
+// vector z from one end to the other. The force is a multiple f of z; the product is the change of the force
 // when z changes by d.
 #pragma once
 

@@ -2,7 +2,7 @@
 //
 //   κ (ψ(λ₁) + ψ(λ₂)),
 //
-// with ψ and the eigenvalues of the Hessian as stretch_limit.hpp states them.
+// with ψ and the eigenvalues of the Hessian as given in stretch_limit.hpp.
 #pragma once
 
 #include <algorithm>

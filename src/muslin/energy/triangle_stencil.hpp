@@ -3,14 +3,15 @@
 // give
 //
 //   energy       A ψ
-//   stress       A S = A ∂ψ/∂E in (warp, weft), E = ½ (FᵀF − 1): dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db
-//   + b·da)) moduli       C₁₁, C₁₂, C₂₂ and G [N/m] in
+//   stress       A S = A ∂ψ/∂E in (warp, weft), E = ½ (FᵀF − 1):
+//                dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db + b·da))
+//   moduli       C₁₁, C₁₂, C₂₂ and G [N/m] in
 //
 //     d²W = A (C₁₁ (a·da)² + 2 C₁₂ (a·da)(b·db) + C₂₂ (b·db)² + G (a·db + b·da)²)
 //         + A (S_uu da·da + S_vv db·db + 2 S_uv da·db),
 //
-// in (warp, weft) or, with `principal`, in the directions of the principal stretches, along with S there. A
-// law with `excess` stores no energy where that is not positive. See membrane_law.hpp and
+// in (warp, weft). A law with `principal` gives the moduli and S in the directions of the principal stretches
+// instead. A law with `excess` stores no energy where `excess` is not positive. See membrane_law.hpp and
 // stretch_limit_law.hpp.
 #pragma once
 

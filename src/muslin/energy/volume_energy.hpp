@@ -2,12 +2,12 @@
 //
 //   W = Σ ½ κ f V₀ (V/V₀ − 1)²,   V₀ = width³
 //
-// with f the fill of the voxel and V the volume within its eight corners, faces taken as bilinear patches. One
-// volume for each voxel, with the corners in equal roles: the six tetrahedra of a voxel are biased towards
-// one diagonal, deflect a bouncing body sideways, and lock. V is a polynomial, so W is smooth everywhere:
-// also a flat or inverted voxel (V ≤ 0) has a restoring force. The idea of keeping volumes beside the springs
-// of a mass-spring system: Teschner, Heidelberger, Müller, Gross 2004, and Diziol, Bender, Bayer 2009 for
-// whole bodies. docs/theory/volume.md.
+// with f the fill of the voxel and V the volume within its eight corners, whose faces are bilinear patches.
+// Each voxel has one volume, in which all corners have equal roles: the six tetrahedra of a voxel are biased
+// towards one diagonal, deflect a bouncing body sideways, and lock. V is a polynomial, so W is smooth
+// everywhere, and a flat or inverted voxel (V ≤ 0) has a restoring force too. Volume terms beside the springs
+// of a mass-spring system were proposed by Teschner, Heidelberger, Müller, Gross 2004, and for whole bodies
+// by Diziol, Bender, Bayer 2009. docs/theory/volume.md.
 #pragma once
 
 #include <array>

@@ -16,13 +16,11 @@ struct Slice {
   double value = 0;
 };
 
-/// Reads `z=0`, `x=0.5` and the like.
-/// Errors: usage.
+/// Parses a slice such as `z=0` or `x=0.5`. Errors: usage.
 Slice parse_slice(std::string_view text);
 
-/// Reads a margin in rings of samples: `N`, or one number for each of x, y, z: `X,Y` or `X,Y,Z` (Z as Y if
-/// left out). Each 0 … 1000.
-/// Errors: usage.
+/// Parses a margin in rings of samples, 0 … 1000: `N` for all axes, `X,Y,Z` for each axis, or `X,Y`, where Z
+/// equals Y. Errors: usage.
 Vec3i parse_margin(std::string_view text);
 
 struct FieldPrintSettings {
@@ -34,9 +32,8 @@ struct FieldPrintSettings {
   bool csv = false;
 };
 
-/// Returns signed distances on the slice plane itself, at integer multiples of the voxel width in world
-/// coordinates: those inside the mesh's bounding box (thickened, if it is thickened) and `margin` rings
-/// around them.
+/// Returns signed distances on the slice plane, at integer multiples of the voxel width in world coordinates:
+/// all samples inside the bounding box of the mesh (after thickening, if any) and `margin` rings around them.
 ///
 /// As a table: three decimals, columns by ascending x, rows by descending y (for a slice x = c: columns z,
 /// rows y; for y = c: columns x, rows z). As CSV: a header and one row `x,y,z,distance` for each sample in

@@ -37,7 +37,8 @@ class MUSLIN_API SignedDistance {
   /// Returns the unsigned distance, searching up to `max_distance`. A `hint`, the triangle nearest to a point
   /// close by, only makes it faster.
   SurfacePoint nearest(const Vec3& point, double max_distance, int hint = -1) const;
-  /// True if every edge is run as often one way as the other: then the sign changes at the surface only.
+  /// True if each edge is traversed equally often in both directions: then the sign changes at the surface
+  /// only.
   bool watertight() const;
   const Box& bounds() const;
 

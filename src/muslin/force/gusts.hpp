@@ -7,13 +7,13 @@
 
 namespace muslin {
 
-/// Eddies of size `length` and half of it: value noise with C² interpolation in space and time. Each
-/// component has mean 0 and root mean square 1; the seed decides the field. Only integer hashing and
-/// polynomials: same bits everywhere. Not divergence free.
+/// Returns value noise with C² interpolation in space and time: eddies of size 1 and ½. Each component has
+/// mean 0 and root mean square 1; the seed decides the field. It uses only integer hashing and polynomials
+/// and gives the same bits on every machine. The field is not divergence free.
 ///
-/// Argument: place and time in eddy sizes and eddy turnover times. Source: K. Perlin, Improving Noise,
-/// SIGGRAPH 2002 (the interpolant); G. I. Taylor, The Spectrum of Turbulence, 1938 (frozen eddies carried by
-/// the mean flow).
+/// `place` is in eddy sizes and `time` in eddy turnover times. Sources: K. Perlin, Improving Noise, SIGGRAPH
+/// 2002 (the interpolant); G. I. Taylor, The Spectrum of Turbulence, 1938 (frozen eddies carried by the mean
+/// flow).
 Vec3 gust_noise(const Vec3& place, double time, std::uint64_t seed);
 
 }  // namespace muslin

@@ -21,7 +21,7 @@ struct MUSLIN_API Keyed {
   Vec3 integral(double time) const;
 };
 
-/// A number in place of a vector.
+/// A keyframed number.
 struct MUSLIN_API KeyedNumber {
   struct Key {
     double time = 0;  ///< [s]

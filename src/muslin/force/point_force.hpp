@@ -13,7 +13,7 @@ namespace muslin {
 /// at the end of each step.
 class PointForce : public Load {
  public:
-  /// vertices: each at most once; weights: one for each, none for 1 each.
+  /// vertices: each at most once; weights: one per vertex, or none if all are 1.
   PointForce(const std::vector<int>& vertices, Keyed force, Window window,
              const std::vector<double>& weights = {});
   std::unique_ptr<Potential> potential(const StepContext& step) const override;

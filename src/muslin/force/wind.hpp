@@ -8,7 +8,7 @@
 // n enters twice, so its sign does not matter. The lift direction is left unnormalised: the lift of a plate
 // is proportional to sin α cos α and vanishes at normal incidence.
 //
-// Semi-implicit: n, A, |n·v| and |v| are those at the start of the step, v is that at its end. The force is
+// The force is semi-implicit: n, A, |n·v| and |v| are taken at the start of the step, v at its end. It is
 // then −∂W/∂x of a convex quadratic, so any step length and any wind speed is stable. docs/theory/wind.md.
 #pragma once
 

@@ -29,8 +29,8 @@ struct MUSLIN_API AffineFrame {
 };
 
 /// Returns the frame of a body of these mass properties (volume > 0). A radius less than a thousandth of the
-/// largest is raised to that: the spin of a needle about its axis, or of a foil along itself, is slower than
-/// the real one, which is invisible in pictures, and the equations stay well conditioned.
+/// largest is raised to a thousandth, so that the equations stay well conditioned. This slows the spin of a
+/// needle about its axis, or of a foil in its plane, which is invisible in pictures.
 MUSLIN_API AffineFrame equimomental_frame(const MassProperties& body);
 
 /// Signs of the corners, one row per corner.

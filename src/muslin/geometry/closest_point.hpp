@@ -1,9 +1,9 @@
 // ClosestPointQuery finds the point of a triangle mesh nearest to a given point.
 //
 // It uses a tree of boxes, each oriented to fit the patch of surface in it (Gottschalk, Lin, Manocha,
-// OBBTree, 1996): they are as thin as the patch is flat, so that far fewer triangles are tested than with
-// axis-aligned boxes. The distance to one triangle is that of Ericson, Real-Time Collision Detection (2005),
-// §5.1.5, made safe for needles. All in double.
+// OBBTree, 1996): a box around a flat patch is thin, so far fewer triangles are tested than with axis-aligned
+// boxes. The distance to one triangle follows Ericson, Real-Time Collision Detection (2005), §5.1.5, and is
+// made safe for needles. All arithmetic is in double.
 #pragma once
 
 #include <limits>

@@ -8,8 +8,8 @@
 
 namespace muslin {
 
-/// Returns the mean length of all sides of the triangles (#T by 3, indices into positions); infinite without
-/// any [m].
+/// Returns the mean length [m] of all sides of the triangles (#T by 3, indices into positions); infinity if
+/// there are none.
 inline double mean_edge(ConstVectors positions, std::span<const Vec3i> triangles) {
   if (triangles.empty()) return std::numeric_limits<double>::infinity();
   double sum = 0;

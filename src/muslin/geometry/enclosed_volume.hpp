@@ -2,9 +2,8 @@
 //
 //   V = 1/6 Σ a·(b × c)
 //
-// over the triangles, seen from outside counter-clockwise. Holes are closed by fans about the centroid of
-// their rim, so that a surface that is nearly closed has a volume, and its rim takes part of the force on the
-// lid.
+// over the triangles, counter-clockwise seen from outside. Holes are closed by fans of triangles about the
+// centroid of their rim, so that a nearly closed surface has a volume. The rim carries the force on the fan.
 #pragma once
 
 #include <array>
@@ -19,8 +18,9 @@ namespace muslin {
 
 class EnclosedVolume {
  public:
-  /// `triangles` #T by 3 of `vertex_count` vertices, oriented alike; vertices of no triangle are left alone.
-  /// Errors: input, if an edge has more than two triangles or two that are not oriented alike.
+  /// `triangles` (#T by 3) index `vertex_count` vertices and have a common orientation; vertices of no
+  /// triangle get no force. Errors: input, if an edge has more than two triangles or two that are not
+  /// oriented alike.
   EnclosedVolume(const std::vector<Vec3i>& triangles, std::size_t vertex_count);
 
   std::size_t vertex_count() const { return vertex_count_; }
@@ -34,13 +34,13 @@ class EnclosedVolume {
   /// y += factor ∂²V/∂x² p.
   void add_hessian_product(ConstVectors x, ConstVectors p, double factor, Vectors y) const;
 
-  /// An edge a → b of a triangle with corner `left`, the other side of it being `right`, either of which may
-  /// be vertex_count() + h, the centre of hole h. ∂²V/∂x_a∂x_b = [x_right − x_left]ₓ/6.
+  /// An edge a → b. `left` and `right` are the corners opposite to it in the two triangles that share it;
+  /// either may be vertex_count() + h, the centre of hole h. ∂²V/∂x_a∂x_b = [x_right − x_left]ₓ/6.
   struct Edge {
     int a, b, left, right;
   };
   const std::vector<Edge>& edges() const { return edges_; }
-  /// x and the centres of the holes.
+  /// Returns x followed by the centres of the holes.
   std::vector<Vec3> with_centres(ConstVectors x) const;
 
  private:

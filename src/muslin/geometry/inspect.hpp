@@ -29,7 +29,7 @@ struct MeshReport {
 /// warning are filled in. Components are joined by shared vertices.
 MUSLIN_API MeshReport inspect(const Mesh& mesh);
 
-/// Positions beyond this are refused, since the file must be broken [m].
+/// Coordinates beyond this [m] are refused, since the file must be broken.
 inline constexpr double largest_coordinate = 1e9;
 
 /// Throws Error(input) naming `file` if the mesh cannot be used at all: no vertices, no faces, a position

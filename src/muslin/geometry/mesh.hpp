@@ -41,8 +41,8 @@ struct MeshCut {
   std::vector<int> origins;  ///< #V of the new mesh
 };
 /// Opens edges as `cut` does for a topology. Faces, their order and their texture coordinates stay; new
-/// vertices come last, lie where their origins do and belong to the groups of those. Errors: those of the
-/// other `cut`.
+/// vertices come last, have the positions of their origins and belong to their groups. Errors: as for the
+/// `cut` of a topology.
 MUSLIN_API MeshCut cut(const Mesh& mesh, std::span<const std::array<int, 2>> edges);
 
 /// The polygons cut into triangles, in face order, n − 2 from n corners, with the orientation of their
@@ -55,8 +55,8 @@ struct Triangulation {
 /// Indices must be in range (require_usable).
 MUSLIN_API Triangulation triangulate(const Mesh& mesh);
 
-/// Returns twice the area of a polygon times its unit normal (Newell's sum): exact for plane polygons, the
-/// best-fitting plane for others. Not finite or zero if the polygon is degenerate.
+/// Returns twice the area of a polygon times its unit normal (Newell's sum): exact for planar polygons, that
+/// of the best-fitting plane for others. Zero or not finite if the polygon is degenerate.
 MUSLIN_API Vec3 newell_normal(ConstVectors positions, std::span<const int> face);
 
 }  // namespace muslin

@@ -6,17 +6,17 @@
 
 namespace muslin {
 
-/// Triangles of a subdivided icosahedron, vertices on the sphere: 642 of them.
+/// A subdivided icosahedron with 642 vertices on the sphere.
 Mesh sphere_mesh(const Vec3& centre, double radius);
 
-/// Around the segment a b: rings of quads, closed by half spheres. a ≠ b.
+/// The capsule around the segment a b (a ≠ b): rings of quads, closed by half spheres.
 Mesh capsule_mesh(const Vec3& a, const Vec3& b, double radius);
 
-/// Eight vertices, six quads, along the axes.
+/// An axis-aligned box: eight vertices, six quads.
 Mesh box_mesh(const Vec3& centre, const Vec3& size);
 
-/// A square of one quad in the plane through `centre` across `normal`, seen from where the normal points to;
-/// its sides run along two axes if the normal does.
+/// A square of one quad in the plane through `centre` with this normal, which is also its front side. Its
+/// sides are parallel to two axes if the normal is parallel to the third.
 Mesh plane_mesh(const Vec3& centre, const Vec3& normal, double side);
 
 }  // namespace muslin

@@ -13,11 +13,11 @@ bool is_closed(const Mesh& mesh);
 /// and ends where the sheet ends (a flat rectangle becomes a box of the same length and width).
 ///
 /// Vertices move along the angle-weighted normal of their faces (Thürmer, Wüthrich 1998), by half the
-/// thickness over the cosine that the faces make with it, so that faces move by half the thickness also
-/// where the sheet is creased; by no more than the whole thickness, which creases sharper than 60° reach.
-/// Sheets that meet in an edge of three or more faces each get a thickness of their own, with a wall along
-/// that edge; so do the faces of a one-sided sheet (Möbius). UVs and groups are dropped. Errors: usage, if
-/// the thickness is not positive and finite.
+/// thickness over the cosine of its angle to the faces, so that faces move by half the thickness where the
+/// sheet is creased too. The move is limited to the whole thickness, which is reached at creases sharper than
+/// 60°. Sheets that meet in an edge of three or more faces are thickened separately, with a wall along that
+/// edge; so are the faces of a one-sided sheet (Möbius). UVs and groups are dropped. Errors: usage, if the
+/// thickness is not positive and finite.
 Mesh thicken(const Mesh& mesh, double thickness);
 
 }  // namespace muslin

@@ -22,8 +22,8 @@ class WindingNumber {
   /// seen from outside (see orientation.hpp).
   WindingNumber(ConstVectors positions, std::span<const Vec3i> triangles);
 
-  /// (1/4π) Σ solid angle of each triangle seen from `point`; clusters farther than twice their radius by a
-  /// Taylor series of second order (error below 1e-2).
+  /// Returns (1/4π) Σ solid angle of each triangle seen from `point`. Clusters farther away than twice their
+  /// radius are evaluated by a Taylor series of second order (error below 1e-2).
   double operator()(const Vec3& point) const;
 
  private:

@@ -5,8 +5,8 @@
 //
 //   C_ijkl = Σ over directions o of  m_o · o_i o_j o_k o_l / |o|²,
 //
-// m_o the spring's modulus (its constant over the voxel width). All moduli below are those of a large block
-// with unstretched springs; docs/theory/lattice-moduli.md has closed forms, thin sheets, and limits.
+// m_o the spring's modulus (its constant over the voxel width). All moduli below hold for a large block with
+// unstretched springs; docs/theory/lattice-moduli.md has closed forms, thin sheets, and limits.
 #pragma once
 
 #include <optional>
@@ -45,14 +45,14 @@ ElasticModuli elastic_moduli(const SpringModuli& moduli, Bracing bracing, double
 /// Returns Young's modulus of a pull along the unit vector `direction` [N/m²].
 double youngs_modulus(const StiffnessMatrix& stiffness, const Vec3& direction);
 
-/// Returns springs of which a block has this Young's and shear modulus along its axes [N/m²]; face and body
-/// diagonals get the same modulus. Without a shear modulus it is 0.4 × Young's, which makes full bracing
+/// Returns the springs for which a block has this Young's and shear modulus along its axes [N/m²]; face and
+/// body diagonals get the same modulus. Without a shear modulus it is 0.4 × Young's, which makes full bracing
 /// isotropic with Poisson's ratio ¼; Poisson's ratio cannot be chosen independently (springs pull along their
 /// length: C12 = C44, Cauchy's relation), except by a volume modulus. Errors: input, unless Young's modulus
 /// is positive and the shear modulus ≥ 0 and below greatest_shear_ratio × Young's.
 SpringModuli springs_for(double youngs, std::optional<double> shear, Bracing bracing);
 
-/// Returns the limit, exclusive, of the shear over Young's modulus that springs_for can reach.
+/// Returns the bound below which springs_for can reach a ratio of shear to Young's modulus.
 double greatest_shear_ratio(Bracing bracing);
 
 }  // namespace muslin

@@ -11,7 +11,7 @@ struct LibraryMaterial {
   std::string_view text;
 };
 
-/// In alphabetical order.
+/// Returns all materials in alphabetical order.
 std::span<const LibraryMaterial> material_library();
 
 }  // namespace muslin

@@ -47,7 +47,7 @@ struct MaterialNumber {
   double value = 0;
   std::string unit;  ///< empty: none
 };
-/// Return the numbers of the material; none if it has none of the kind.
+/// Return the numbers of the material for a lattice or a shell; empty if it has none.
 std::vector<MaterialNumber> lattice_numbers(const Material& material);
 std::vector<MaterialNumber> shell_numbers(const Material& material);
 

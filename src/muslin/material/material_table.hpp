@@ -5,7 +5,7 @@
 
 namespace muslin {
 
-/// The table [lattice] of a material file, of settings Material.
+/// The table [lattice] of a material file; its settings are a Material.
 const schema::Table& lattice_material_table();
 
 }  // namespace muslin

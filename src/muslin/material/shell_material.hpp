@@ -21,10 +21,10 @@ struct ShellMaterial {
   double bending_damping = 0;    ///< Rayleigh β of bending [s]
 };
 
-/// The table [shell] of a material file. Without a `base` beside them areal_density, membrane_warp and
-/// bending_warp are required; weft is as warp, shear as in an isotropic sheet, bias between warp and weft,
-/// bending_damping as stiffness_damping, unless given. A bias so low that the sheet would not
-/// resist twisting is an error.
+/// The table [shell] of a material file. areal_density, membrane_warp and bending_warp are required unless
+/// there is a `base` beside them. Unless given, weft equals warp, shear is that of an isotropic sheet, bias
+/// lies between warp and weft, and bending_damping equals stiffness_damping. A bias so low that the sheet
+/// would not resist twisting is an error.
 const schema::Table& shell_material_table();
 
 }  // namespace muslin

@@ -1,9 +1,9 @@
-// HessianSink takes the Hessians of potentials, element by element, for the linear systems of a step. It owns
-// the storage; a potential asks once for a view of the storage of a pattern and adds its blocks there, from
-// several threads where it likes.
+// HessianSink receives the Hessians of potentials, element by element, for the linear systems of a step. It
+// owns the storage; a potential asks once for a view of the storage of a pattern and adds its blocks there,
+// from several threads if it wants.
 //
-// Vertices are those of all bodies: `first` is the vertex that a potential counts as its vertex 0. All values
-// are added times `scale()`, which the potential multiplies by itself.
+// Vertices are those of all bodies: `first` is the vertex that a potential counts as its vertex 0. The
+// potential multiplies all values by `scale()` before it adds them.
 #pragma once
 
 #include <algorithm>
@@ -57,12 +57,12 @@ struct RelativeTerms {
   }
 };
 
-/// factor · g gᵀ, g = Σ gᵢ over a list of vertices: one stiff combination of many of them, as the volume of a
-/// body.
+/// factor · g gᵀ with g = Σ gᵢ over a list of vertices: one stiff combination of many vertices, such as the
+/// volume of a body.
 struct RankOneTerm {
   double factor = 0;  ///< ≥ 0, already scaled
   std::vector<int> vertices;
-  std::vector<Vec3> gradients;  ///< gᵢ, as many
+  std::vector<Vec3> gradients;  ///< #vertices, gᵢ
 };
 
 class HessianSink {
@@ -71,7 +71,7 @@ class HessianSink {
 
   /// The factor of the Hessians in the system: dt² [s²].
   virtual double scale() const = 0;
-  /// #V of all bodies: masses [kg], and not 0 where a vertex is held.
+  /// Returns the masses of all vertices, #V [kg]; those of held vertices are not 0 either.
   virtual std::span<const double> masses() const = 0;
   virtual std::span<const std::uint8_t> fixed() const = 0;
 

@@ -1,6 +1,5 @@
-// History is what loads remember of a run from step to step, such as plastic angles: named arrays of numbers,
-// usually one for each element. It is part of the State, so that it is saved with it and taken back with a
-// step that is rejected.
+// History stores what loads keep from step to step, such as plastic angles: named arrays of numbers, usually
+// one number per element. It is part of the State: it is saved with it and restored when a step is rejected.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +11,15 @@
 namespace muslin {
 
 struct History {
-  /// Names, each ended by a zero; how many numbers each has; all of them, one array after the other.
+  /// The names, each terminated by a zero; the length of each array; all arrays, one after the other.
   std::vector<std::uint8_t> names;
   std::vector<std::int64_t> counts;
   std::vector<double> values;
 
-  /// Returns the array of this name, of `count` numbers; empty if nothing was remembered so far. Errors:
-  /// input, if it has another count.
+  /// Returns the array of this name, `count` numbers; empty if it was never written. Errors: input, if it has
+  /// another length.
   std::span<const double> find(std::string_view name, std::size_t count) const;
-  /// Returns the same to write to; zeros at first. Valid until the next call.
+  /// Returns the same array for writing; new arrays are zero. Valid until the next call.
   std::span<double> get(std::string_view name, std::size_t count);
 
   template <class Self, class Arrays>

@@ -20,7 +20,7 @@ namespace muslin {
 class HessianSink;
 
 /// W(x) in joule for positions x (#V by 3, m). Implementations are immutable, safe to call from several
-/// threads, deterministic for any thread count, and parallel inside where that pays.
+/// threads, deterministic for any thread count, and parallel inside where that is faster.
 class MUSLIN_API Potential {
  public:
   virtual ~Potential() = default;
@@ -30,7 +30,7 @@ class MUSLIN_API Potential {
   /// g += ∂W/∂x, #V by 3, N.
   virtual void add_gradient(ConstVectors x, Vectors g) const = 0;
 
-  /// Both in one pass, for potentials that can: the bits of add_gradient and value.
+  /// Computes both in one pass where a potential can; the bits are those of add_gradient and value.
   virtual double add_gradient_and_value(ConstVectors x, Vectors g) const {
     add_gradient(x, g);
     return value(x);
@@ -43,8 +43,8 @@ class MUSLIN_API Potential {
   /// preconditioner, N/m.
   virtual void add_diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const = 0;
 
-  /// Adds the Hessian at x to `into`, W being a potential of its vertices first, first + 1, …. x must stay
-  /// valid while `into` is used. By default a potential is added by its product.
+  /// Adds the Hessian at x to `into`, where this potential's vertices are numbered first, first + 1, …. x
+  /// must stay valid while `into` is used. By default a potential is added as its Hessian product.
   virtual void linearize(ConstVectors x, HessianSink& into, std::size_t first) const;
 
   /// The part of value(x) that is lost, not stored, once a step ends at x [J]: plastic work.
@@ -62,14 +62,14 @@ class MUSLIN_API Potential {
 };
 
 /// A load that depends on time, velocity or history (gravity, wind, damping): at the start of a step it
-/// yields the potential which that step minimises. Null: nothing acts during this step.
+/// yields the potential which that step minimises. Null means that nothing acts during this step.
 class MUSLIN_API Load {
  public:
   virtual ~Load() = default;
   virtual std::unique_ptr<Potential> potential(const StepContext& step) const = 0;
 
-  /// Ends a step at x under `potential`, which this load yielded for it: writes what it remembers into
-  /// `history`, from which later steps read it.
+  /// Ends a step at x. `potential` is the one that this load yielded for the step. Writes what later steps
+  /// need into `history`.
   virtual void end_step(const Potential& potential, ConstVectors x, History& history) const {
     (void)potential, (void)x, (void)history;
   }

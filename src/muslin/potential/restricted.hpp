@@ -9,7 +9,7 @@
 
 namespace muslin {
 
-/// W of vertices first … first + count − 1 as a potential of all vertices.
+/// A potential of vertices first … first + count − 1, as a potential of all vertices.
 class RestrictedPotential : public Potential {
  public:
   RestrictedPotential(std::shared_ptr<const Potential> local, std::size_t first, std::size_t count)

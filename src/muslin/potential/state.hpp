@@ -47,10 +47,10 @@ struct StepContext {
   std::vector<Vec3> anchor;               ///< #V by 3 [m]
   std::vector<Vec3> inertial_prediction;  ///< #V by 3, end positions without forces [m]
   std::vector<std::uint8_t> rigidly_rotated;  ///< #V, 1 where anchor and prediction are those of a turning
-                                              ///< rigid body; empty: nowhere
+                                              ///< rigid body; empty: none
   ConstVectors positions;                 ///< #V by 3, at time_begin [m]
   ConstVectors velocities;                ///< #V by 3, at time_begin [m/s]
-  const History* history = nullptr;       ///< of the loads, at time_begin; null: nothing happened before
+  const History* history = nullptr;       ///< of the loads, at time_begin; null: no earlier steps
 };
 
 }  // namespace muslin

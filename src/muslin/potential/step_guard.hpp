@@ -1,5 +1,6 @@
-// StepGuard keeps a motion safe where neither an energy nor a common step length can: surfaces must not
-// cross. The solver passes every displacement through the guard; contact is one (contact/contact_guard.hpp).
+// StepGuard limits motion vertex by vertex where neither an energy nor a common step length suffices:
+// surfaces must not cross. The solver passes every displacement through the guard. Contact is a guard
+// (contact/contact_guard.hpp).
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,8 @@ class MUSLIN_API StepGuard {
  public:
   virtual ~StepGuard() = default;
 
-  /// Begins a step at x; a step begun and not ended is discarded. Others give way to vertices v for which
-  /// held[v] (#V) is not 0.
+  /// Begins a step at x; a step begun and not ended is discarded. held[v] (#V) is not 0 for held vertices, to
+  /// which all others give way.
   virtual void begin(ConstVectors x, std::span<const std::uint8_t> held) = 0;
 
   /// Returns the length up to which motions need not be limited [m].
@@ -27,15 +28,16 @@ class MUSLIN_API StepGuard {
   /// Limits the displacement d from x, vertex by vertex, such that x + t d is safe for all t in [0, 1]. `x`
   /// must have been reached from the start of the step by limited displacements only.
   virtual void limit(ConstVectors x, Vectors d) = 0;
-  /// The same for a displacement that moves each group of vertices (#V, −1: of none) as a rigid body. As no
-  /// distance within a group changes, only groups close to others are limited.
+  /// Limits a displacement that moves each group of vertices as a rigid body. `groups` (#V) is the group of
+  /// each vertex, −1 for none. No distance within a group changes, so only groups close to others are
+  /// limited.
   virtual void limit(ConstVectors x, Vectors d, std::span<const int> groups) = 0;
 
   /// Advances x by d in collision-free substeps, however long d is.
   virtual void advance(Vectors x, ConstVectors d) = 0;
 
-  /// Selects normal forces and closest points of friction: those at x, or those of the last potential of this
-  /// step.
+  /// Selects where friction takes its normal forces and closest points: at x (anew), or from the last
+  /// potential of this step (kept).
   enum class Friction { anew, kept };
   /// Returns the energy of contact near x; call at every iterate. Friction is lagged at x, or taken from the
   /// last potential of this step. Valid until the next call.
@@ -45,8 +47,8 @@ class MUSLIN_API StepGuard {
     int vertex = 0;
     double weight = 0;
   };
-  /// A contact of the last potential resists a relative motion Σ weight · u, by the stiffness along the
-  /// normal and across it [N/m].
+  /// A contact of the last potential. It resists the relative motion Σ weight · u with a normal and a
+  /// tangential stiffness [N/m].
   struct Contact {
     Vec3 normal;
     double normal_stiffness = 0, tangential = 0;

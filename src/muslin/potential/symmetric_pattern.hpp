@@ -1,5 +1,5 @@
-// SymmetricPattern lists the 3×3 blocks of a symmetric matrix between the vertices of a mesh: those of every
-// pair of vertices of an element, and the diagonal.
+// SymmetricPattern lists the 3×3 blocks of a symmetric matrix between the vertices of a mesh: one for every
+// pair of vertices that share an element, and the diagonal ones.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace muslin {
 
-/// Only the upper triangle with the diagonal has blocks of its own; row v reads those of earlier rows
+/// Only blocks of the diagonal and the upper triangle are stored; row v reads blocks of earlier rows
 /// transposed.
 class SymmetricPattern {
  public:
@@ -24,7 +24,7 @@ class SymmetricPattern {
   /// Returns the block of a row and a column not before it, which must exist.
   int find(int row, int column) const;
 
-  /// A block of an earlier row, whose column is this one.
+  /// A block of an earlier row whose column is this row.
   struct Mirrored {
     int block, row;
   };

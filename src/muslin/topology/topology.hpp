@@ -1,7 +1,8 @@
-// Topology is how the faces of a surface are joined: the vertices of each face, and the edges they share.
+// Topology describes how the faces of a surface are joined: the vertices of each face and the edges they
+// share.
 //
-// It is a value. A change, such as a cut, makes a new one of a higher version; what is derived from it
-// (edges, hinges, contact surfaces) is built anew by the functions that built it before.
+// It is a value. A change, such as a cut, makes a new topology with a higher version; derived data (edges,
+// hinges, contact surfaces) is rebuilt by the functions that built it before.
 #pragma once
 
 #include <array>
@@ -44,7 +45,7 @@ struct EdgeUse {
 /// left out.
 MUSLIN_API std::vector<EdgeUse> edge_uses(const Topology& topology);
 
-/// Returns those of triangles: the corner of a side is 3 t + c, c the corner of triangle t.
+/// Returns the sides of triangles: the side that starts at corner c of triangle t has corner index 3 t + c.
 std::vector<EdgeUse> triangle_sides(std::span<const Vec3i> triangles);
 
 /// Calls visit(uses of one edge) for each edge of sorted `uses`.
@@ -56,16 +57,16 @@ void for_each_edge(std::span<const EdgeUse> uses, const Visit& visit) {
   }
 }
 
-/// A changed topology, and the vertex of the earlier one that each of its vertices comes from.
+/// A changed topology, and for each of its vertices the vertex of the earlier topology it comes from.
 struct TopologyChange {
   Topology topology;
   std::vector<int> origins;  ///< #V of the new topology
 };
 
 /// Opens edges, given by their two vertices: faces on both sides no longer share them. Around a vertex of
-/// these edges, faces that no other edge joins there part: those of the lowest face keep the vertex, every
-/// other group gets a new one, numbered from `vertex_count` on. An edge both of whose vertices stay whole
-/// stays closed. Errors: usage, for a pair of vertices that is no edge.
+/// these edges, the faces fall into groups that other edges still join. The group with the lowest face keeps
+/// the vertex; every other group gets a new vertex, numbered from `vertex_count` on. An edge stays closed if
+/// neither of its vertices is split. Errors: usage, for a pair of vertices that is not an edge.
 MUSLIN_API TopologyChange cut(const Topology& topology, std::size_t vertex_count,
                               std::span<const std::array<int, 2>> edges);
 
