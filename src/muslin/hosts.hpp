@@ -1,4 +1,5 @@
-// Includes the public interface and what else the program and the Python module are made of. Not installed.
+// Includes the public interface and the further headers that the program and the Python module use. Not
+// installed.
 #pragma once
 
 #include "muslin/cache/run_quality.hpp"

@@ -6,11 +6,12 @@
 
 namespace muslin {
 
-/// Holds a directory for one process until destroyed or the process ends, however it ends.
+/// Holds the lock until destroyed or until the process ends, even if it crashes.
 class DirectoryLock {
  public:
   DirectoryLock() = default;
-  /// Error(file) if another process holds it; `directory` must exist. The lock is the file `name` in it.
+  /// Locks `directory`, which must exist, with the file `name` in it. Errors: file, if another process holds
+  /// the lock.
   DirectoryLock(const std::filesystem::path& directory, std::string_view name);
   ~DirectoryLock();
   DirectoryLock(DirectoryLock&& other) noexcept;

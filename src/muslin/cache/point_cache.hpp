@@ -1,8 +1,8 @@
 // Reads and writes point caches: one position per point and frame, for points of fixed number and order.
 //
-// PC2 (little-endian): "POINTCACHE2\0", int32 version 1, int32 points, float32 start, float32 rate,
-// int32 samples, then per sample float32 xyz of every point. start = 0, rate = 1: one sample a frame.
-// MDD (big-endian): int32 frames, int32 points, float32 time of each frame [s], then float32 xyz.
+// PC2 (little-endian): "POINTCACHE2\0", int32 version 1, int32 points, float32 start, float32 rate, int32
+// samples, then per sample float32 xyz of every point. start = 0, rate = 1: one sample per frame. MDD
+// (big-endian): int32 frames, int32 points, float32 time of each frame [s], then float32 xyz.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ using Vec3f = Eigen::Vector3f;
 class MUSLIN_API Pc2Writer {
  public:
   Pc2Writer() = default;
-  /// A new file, or with Mode::resume an existing one, of which the first `samples` samples are kept.
-  /// Errors: file; input, if the existing file has other points or fewer samples.
+  /// Opens a new file or, with Mode::resume, an existing one whose first `samples` samples are kept. Errors:
+  /// file; input, if the existing file has another number of points or fewer samples.
   Pc2Writer(const std::filesystem::path& path, std::size_t points, OutputFile::Mode mode, int samples = 0);
 
   int samples() const { return samples_; }
@@ -40,10 +40,10 @@ class MUSLIN_API Pc2Writer {
   int samples_ = 0;
 };
 
-/// Reads samples of a PC2 file in any order. A file that was cut off has the samples that are complete.
+/// Reads samples of a PC2 file in any order. A truncated file provides its complete samples.
 class MUSLIN_API Pc2Reader {
  public:
-  /// Errors: file; input, if it is no PC2 file.
+  /// Errors: file; input, if it is not a PC2 file.
   explicit Pc2Reader(std::filesystem::path path);
 
   std::size_t points() const { return points_; }

@@ -23,14 +23,14 @@ struct RunProgress {
 struct RunOptions {
   std::filesystem::path directory;     ///< output directory of the run
   std::vector<std::string> overrides;  ///< KEY=VALUE, as read_scene takes them
-  int frames = -1;                     ///< last frame; −1: as the scene says
+  int frames = -1;                     ///< last frame; −1: that of the scene
   bool resume = false;                 ///< continue from the last checkpoint, if any
   int resume_from = -1;                ///< with `resume`: continue from this frame; −1: the last
   /// Start although surfaces cross; these are not in contact until they part. The setting is stored in the
   /// run and applies on resume.
   bool allow_tangled = false;
   bool keep_states = false;  ///< keep the checkpoint of every frame, so that any can be resumed from
-  /// Called after each stage, step and frame, from the calling thread.
+  /// Called after each stage, step and frame, in the calling thread.
   std::function<void(const RunProgress&)> report;
   /// Polled before each step. When true: a checkpoint is written, the run is marked `interrupted`, and
   /// run_scene throws Error(interrupted).

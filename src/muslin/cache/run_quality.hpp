@@ -1,5 +1,5 @@
-// RunQuality collects the defects of a run: missed tolerances, held-back vertices, crossings, missed limits
-// of stretch.
+// RunQuality collects the defects of a run: missed tolerances, held-back vertices, crossings, exceeded
+// stretch limits.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace muslin {
 
-/// Summed over the rows of diagnostics.csv and stretch.csv, those of earlier sessions as well.
+/// Summed over the rows of diagnostics.csv and stretch.csv, including rows written before a resume.
 struct MUSLIN_API RunQuality {
   /// A shell that was stretched beyond its `stretch_limit`.
   struct Overstretched {
     std::string body;
     std::vector<int> frames;        ///< at whose end it was
-    double stretch = 0, limit = 0;  ///< in the frame in which it was farthest beyond
+    double stretch = 0, limit = 0;  ///< in the frame with the largest excess
   };
 
   std::int64_t steps = 0, converged_steps = 0;
@@ -34,8 +34,8 @@ struct MUSLIN_API RunQuality {
   void add(const LimitedStretch& row);
 };
 
-/// "frame 3", "frames 12 to 15 and 20"; of many, the first ranges and how many frames more. `frames` ascend
-/// and are not empty.
+/// Returns "frame 3" or "frames 12 to 15 and 20"; for many frames, the first ranges and the number of further
+/// frames. `frames` must ascend and not be empty.
 MUSLIN_API std::string describe_frames(const std::vector<int>& frames);
 
 /// Returns warnings for the user, one sentence each; empty if there is no defect.

@@ -23,9 +23,9 @@ enum class SurfaceKind {
 };
 MUSLIN_API const char* name_of(SurfaceKind surface);
 
-/// A run, finished or not, even while it is being written. Frames 0 … frame_count() − 1 are complete in all
-/// files; the count is taken when the reader is made. Bodies are numbered as in bodies(). Errors of all
-/// functions that take one: usage, if there is no such body or frame.
+/// Reads a run, finished or not, even while it is being written. Frames 0 … frame_count() − 1 are complete in
+/// all files; the count is determined when the reader is constructed. Bodies are numbered as in bodies().
+/// Functions that take a body or frame throw Error(usage) if it does not exist.
 class MUSLIN_API RunReader {
  public:
   /// Errors: file, if there is no run; input, if it is damaged.
@@ -46,7 +46,8 @@ class MUSLIN_API RunReader {
   /// Error(usage) naming the bodies there are.
   int find_body(const std::string& name) const;
 
-  /// Returns the colour in pictures, sRGB 0…1: that of the scene, else from a palette; colliders are grey.
+  /// Returns the colour in pictures, sRGB 0…1: the scene's, or else one from a palette; colliders are grey by
+  /// default.
   Vec3 colour(int body) const;
 
   bool is_collider(int body) const;
@@ -55,12 +56,13 @@ class MUSLIN_API RunReader {
   /// Shells and colliders have a skin, and neither contour nor lattice.
   bool has_lattice(int body) const;
 
-  /// The surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of a body
-  /// without a lattice.
+  /// Returns the surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of
+  /// a body without a lattice.
   const Mesh& mesh(int body, SurfaceKind surface) const;
-  /// Its vertices at a frame, in the same order [m].
+  /// Returns the vertices of that surface at a frame, in the same order [m].
   std::vector<Vec3f> points(int body, SurfaceKind surface, int frame) const;
-  /// Their velocities by central differences over the neighbouring frames, one-sided at the ends [m/s].
+  /// Returns their velocities by central differences over the neighbouring frames, one-sided at the ends
+  /// [m/s].
   std::vector<Vec3f> velocities(int body, SurfaceKind surface, int frame) const;
 
   /// The body's lattice; empty if it has none: rest positions [m], and voxels with their corners in the order
@@ -78,7 +80,7 @@ class MUSLIN_API RunReader {
   std::size_t selectable_count(int body) const;
   std::vector<Vec3f> selectable_points(int body, int frame) const;
 
-  /// Returns the vertices of the pins and point forces in the last session of the run.
+  /// Returns the vertices of the pins and point forces since the run was last started or resumed.
   const Selections& selections() const;
 
   /// Rows of diagnostics.csv, frames 0 … frame_count() − 1.

@@ -36,17 +36,18 @@ MUSLIN_API std::vector<std::string> changes_since(const std::filesystem::path& d
 class MUSLIN_API RunWriter {
  public:
   /// Begins a run at the simulation's frame 0, or with `resume` restores the simulation from the newest
-  /// checkpoint, or that of `history.resume_from`, and continues from there; without any it begins anew. An
-  /// earlier run in `directory` is replaced, only muslin's own files. Errors: file, if the directory cannot
-  /// be made or written, holds something else than a run, or is being written by another process; input, if
-  /// the run to resume has other bodies, naming what changed, or no state of `history.resume_from`.
+  /// checkpoint, or that of `history.resume_from`, and continues from there; without a checkpoint it starts
+  /// from frame 0. An earlier run in `directory` is replaced; only files of muslin are removed. Errors: file,
+  /// if the directory cannot be created or written, contains anything other than a run, or is being written
+  /// by another process; input, if the run to resume has other bodies (the message names the change) or no
+  /// state of frame `history.resume_from`.
   RunWriter(std::filesystem::path directory, Simulation& simulation, int total_frames, bool resume,
             RunHistory history = {});
   /// Leaves the status `running`, as a killed process does, unless finish() was called.
   ~RunWriter();
 
   bool resumed() const;
-  /// Settings that differ from those of the run that is resumed, e.g. "time.duration".
+  /// Returns the settings that differ from those of the resumed run, e.g. "time.duration".
   const std::vector<std::string>& changes() const;
   /// Adds the frame that the simulation has just finished.
   void write_frame();

@@ -10,14 +10,14 @@
 
 namespace muslin {
 
-/// The points that a `where` of the scene chose, numbered as RunReader::selectable_points are: in the cache
-/// of the vertices of the body, or else of its skin.
+/// The points that a `where` of the scene selected, numbered as in RunReader::selectable_points: in the cache
+/// of the body's vertices, or else of its skin.
 struct Chosen {
   std::string name;
   int body = 0;
   std::vector<int> vertices;   ///< ascending
   double from = 0, until = 0;  ///< [s] of a pin: when it holds; `until` may be infinite
-  int force = -1;              ///< of a point force: its place among the forces of the resolved scene
+  int force = -1;              ///< of a point force: its index among the forces of the resolved scene
 };
 
 struct Selections {
@@ -27,8 +27,8 @@ struct Selections {
 MUSLIN_API Selections selections_of(const Model& model);
 MUSLIN_API std::string selections_json(const Model& model);
 
-/// `points`: per body, how many points its cache has. Empty if the file does not exist: versions before 0.1
-/// did not write it. Errors: file; input, if it is damaged.
+/// `points`: the number of points in the cache of each body. Empty if the file does not exist: versions
+/// before 0.1 did not write it. Errors: file; input, if it is damaged.
 MUSLIN_API Selections read_selections(const std::filesystem::path& path,
                                       const std::vector<std::string>& bodies,
                                       const std::vector<std::size_t>& points);

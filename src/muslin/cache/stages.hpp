@@ -10,7 +10,7 @@ namespace muslin {
 
 /// Writes per body NAME.field.vti (signed distance at the lattice's corners and one voxel around),
 /// NAME.voxels.vtu (with fill), NAME.tets.vtu, NAME.springs.vtu (with kind 0 edge, 1 face diagonal, 2 body
-/// diagonal), NAME.skin.obj, NAME.solid.obj, NAME.contour.obj; of a shell NAME.shell.vtu (its triangles with
+/// diagonal), NAME.skin.obj, NAME.solid.obj, NAME.contour.obj; for a shell NAME.shell.vtu (its triangles with
 /// their warp) and NAME.skin.obj; and stats.json. Errors: file.
 void write_stages(const std::filesystem::path& directory, const Model& model, const Progress& progress = {});
 

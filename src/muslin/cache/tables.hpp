@@ -15,16 +15,16 @@ extern const std::string_view diagnostics_header;
 extern const std::string_view probes_header;
 extern const std::string_view stretch_header;
 
-/// One line, numbers so that reading them gives the same double; infinity is `inf`.
+/// Returns one line. Reading the numbers back gives the same doubles; infinity is `inf`.
 std::string diagnostics_row(const Diagnostics& row);
-/// One line per probe of the model.
+/// Returns one line per probe of the model.
 std::string probe_rows(const Simulation& simulation);
 std::string stretch_row(const LimitedStretch& row);
 
-/// The rows of a diagnostics table; an unfinished last line is left out. Tables of earlier versions have no
-/// columns after wall_ms; these are 0 then. Errors: file, input.
+/// Returns the rows of a diagnostics table; an unfinished last line is left out. Tables of earlier versions
+/// have no columns after wall_ms; these values are then 0. Errors: file, input.
 std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path);
-/// The rows of a table of stretches; an unfinished last line is left out. Errors: file, input.
+/// Returns the rows of a table of stretches; an unfinished last line is left out. Errors: file, input.
 std::vector<LimitedStretch> read_stretches(const std::filesystem::path& path);
 
 /// Returns the length of the part of a table up to and including the rows of `last_frame` (the first column).

@@ -1,4 +1,4 @@
-// Reads the mesh of a [[body]], and gives errors and warnings their place in the scene.
+// Reads the mesh of a [[body]] and adds the place in the scene to errors and warnings.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace muslin {
 
-/// Returns the error with a place in the scene, its own place in `file` being part of the message.
+/// Returns the error with a place in the scene; its place in `file` becomes part of the message.
 Error placed_in(const Place& place, const std::string& file, const Error& error);
 
-/// Calls build(); its errors, but for an interruption, get the place in the scene and the mesh file.
+/// Calls build(). Errors get the place in the scene and the mesh file, except an interruption.
 template <class Build>
 auto at_place(const Place& place, const std::string& file, const Build& build) -> decltype(build()) {
   try {
@@ -30,7 +30,7 @@ void warn_of_body(const ComponentInputs& inputs, const std::string& body, const 
 /// the place in the scene and the mesh file.
 void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, Component& component);
 
-/// Continues a hash by the numbers of the settings that a saved state must fit.
+/// Continues a hash with the settings that a saved state must fit.
 std::uint64_t settings_hash(const BodySettings& settings, std::uint64_t seed);
 
 }  // namespace muslin

@@ -1,4 +1,4 @@
-// BodySettings holds what a scene says of a [[body]]: a lattice or a shell.
+// BodySettings holds the settings of a [[body]]: a lattice or a shell.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
-// Component is the unit that a model is made of: a lattice, a shell, a rigid body, a kinematic mesh, or what
-// a program adds. It brings its degrees of freedom and masses, potentials and loads, surface map, constraints
-// and statistics. Contact, solver, cache and views work on what components offer; none of them asks what kind
-// a component is. CONTRIBUTING.md tells how to add a kind.
+// Component is the unit of which a model consists: a lattice, a shell, a rigid body, a kinematic mesh, or a
+// component that a program adds. It provides its degrees of freedom and masses, potentials and loads, surface
+// map, constraints and statistics. Contact, solver, cache and views use this interface only; none of them
+// asks what kind a component is. CONTRIBUTING.md tells how to add a kind.
 //
 // Vertices are counted within the component, from 0, unless a comment says otherwise. A component is built
 // once by its ComponentSource, and immutable and shared from then on.
@@ -41,7 +41,7 @@ struct BodyStatistics {
   double mass = 0;                         ///< [kg]
   double coverage = 1;                     ///< share of the mesh's area inside kept voxels
   double contour_distance = 0;             ///< largest distance of the rest contour from the solid [m]
-  std::int64_t triangles = 0, hinges = 0;  ///< of a mesh that is its own degrees of freedom, or a collider's
+  std::int64_t triangles = 0, hinges = 0;  ///< of a shell's or collider's mesh
   /// Largest stable step of symplectic_euler at rest [s]; infinity without stiffness.
   double stable_step = std::numeric_limits<double>::infinity();
 };
@@ -49,7 +49,7 @@ struct BodyStatistics {
 /// A point of a component.
 struct AttachedPoint {
   Embedding point;      ///< one point
-  std::string warning;  ///< if it is not where it was asked for; a sentence without subject, empty if none
+  std::string warning;  ///< if it is not at the requested place: a sentence without subject
 };
 
 /// Vertices that a force acts on.
@@ -58,20 +58,20 @@ struct LoadedVertices {
   std::vector<double> shares;  ///< #vertices, of the force on each; empty: 1
 };
 
-/// Points besides the skin that a run caches in NAME.POINTS.pc2, and a file that connects them.
+/// Points besides the skin that a run caches in NAME.POINTS.pc2, and a file with their mesh.
 struct CachedPoints {
   std::string name;       ///< such as "contour"
   std::string extension;  ///< of the file NAME.POINTS.EXTENSION, such as "obj"
   std::function<void(const std::filesystem::path&)> write_rest;  ///< writes that file
-  /// From the vertices to these points; null: the vertices themselves, which selections then refer to.
+  /// Maps the vertices to these points; null: the points are the vertices, and selections refer to them.
   const Embedding* embedding = nullptr;
 };
 
 /// How views show a component.
 struct Appearance {
-  std::optional<Vec3> colour = std::nullopt;  ///< sRGB 0…1; none: that of its place in the list
-  std::string shape = "";                     ///< of a collider, such as "plane"; empty: it is none
-  bool unbounded = false;                     ///< the mesh is a patch of something without bounds
+  std::optional<Vec3> colour = std::nullopt;  ///< sRGB 0…1; none: from the palette
+  std::string shape = "";                     ///< of a collider, such as "plane"; empty: not a collider
+  bool unbounded = false;                     ///< the mesh is a patch of an unbounded surface
 };
 
 class MUSLIN_API Component {
@@ -84,7 +84,8 @@ class MUSLIN_API Component {
   int first_vertex = 0;  ///< its vertices are first_vertex … first_vertex + vertex_count − 1 of the state
   int vertex_count = 0;
   BodyStatistics statistics;
-  /// Over its vertices; their names follow the component's. Potentials are added to the solver's in order.
+  /// Over its vertices; in output their names follow the component's. Potentials are added to the solver's
+  /// list in this order.
   std::vector<PotentialTerm> potentials;
   std::vector<LoadTerm> loads;
 
@@ -93,12 +94,12 @@ class MUSLIN_API Component {
   Component& operator=(const Component&) = delete;
   virtual ~Component();
 
-  /// Returns the name of its kind in listings and files: no decision depends on it.
+  /// Returns the name of its kind for listings and files; no decision depends on it.
   virtual std::string kind() const = 0;
 
-  /// Adds to `potentials` and `loads` what depends on the vertices that are held during the whole run
-  /// (#vertices, not 0: held), and sets statistics.stable_step. Called once, before the component is shared.
-  /// Default: nothing.
+  /// Adds the potentials and loads that depend on which vertices are held during the whole run (#vertices,
+  /// not 0: held), and sets statistics.stable_step. Called once, before the component is shared. Default:
+  /// nothing.
   virtual void add_terms(std::span<const std::uint8_t> held) { (void)held; }
 
   // Degrees of freedom.
@@ -116,17 +117,18 @@ class MUSLIN_API Component {
   virtual bool deforms() const { return true; }
   /// True if forces deform it.
   bool is_soft() const { return deforms() && !is_prescribed(); }
-  /// Returns the typical distance of neighbouring vertices, of a rigid body that of its mesh [m].
+  /// Returns the typical distance of neighbouring vertices, for a rigid body those of its mesh [m].
   virtual double spacing() const = 0;
-  /// Returns #vertices labels, equal where terms connect the vertices. Default: one part.
+  /// Returns #vertices labels; vertices connected by terms have equal labels. Default: one part.
   virtual std::vector<int> parts() const;
-  /// Returns the step beyond which single precision loses its masses against its stiffness [s].
+  /// Returns the longest step for which single precision resolves its masses against its stiffness [s].
   virtual double longest_step() const;
   /// Changes anchor and prediction of its vertices for a step from `state`; `fixed`: #V of the model, 1 where
-  /// a vertex is held. Default: leaves them.
+  /// a vertex is held. Default: no change.
   virtual void predict(Integrator integrator, const State& state, std::span<const std::uint8_t> fixed,
                        StepContext& context) const;
-  /// Returns the largest length of an element over its length at rest, in positions of its vertices.
+  /// Returns the largest ratio of an element's length at x to its length at rest; x are the positions of its
+  /// vertices.
   virtual double max_stretch(ConstVectors x) const;
   /// Returns the largest stretch that its material allows, if there is one.
   virtual std::optional<double> stretch_limit() const { return std::nullopt; }
@@ -139,16 +141,16 @@ class MUSLIN_API Component {
   /// component as a whole, and forces on points are shared by its vertices.
   virtual bool selects_vertices() const { return true; }
   virtual std::size_t selectable_count() const { return mesh.vertex_count(); }
-  /// Returns the position of a point that `where` selects among, at the start [m].
+  /// Returns the position at the start of point i of those that `where` selects among [m].
   virtual Vec3 selectable(std::size_t i) const { return mesh.positions[i]; }
-  /// Returns #selectable flags of those that belong to a group of the mesh.
+  /// Returns #selectable flags, 1 for points that belong to the group of the mesh.
   virtual std::vector<std::uint8_t> in_group(const MeshGroup& group) const;
   /// Returns the vertices that a pin holds, ascending. Errors: as select_vertices.
   std::vector<int> held_vertices(const Selection& where, const std::string& what) const;
   /// Returns the vertices that a force on each selected point acts on, all in equal shares if `where` is
   /// absent. Errors: as select_vertices.
   LoadedVertices loaded_vertices(const std::optional<Selection>& where, const std::string& what) const;
-  /// Returns the point of the component at or next to `at`. Default: the nearest of its surface.
+  /// Returns the point of the component at or nearest to `at`. Default: the nearest point of its surface.
   virtual AttachedPoint attach(const Vec3& at) const;
 
   // Contact.
@@ -158,22 +160,23 @@ class MUSLIN_API Component {
 
   // Files and views.
 
-  /// Continue a hash by what a saved state must fit: first the shape of all components, then their materials.
+  /// Continue a hash with the data that a saved state must fit: first the shapes of all components, then
+  /// their materials.
   virtual std::uint64_t shape_hash(std::uint64_t seed) const;
   virtual std::uint64_t material_hash(std::uint64_t seed) const { return seed; }
   virtual Appearance appearance() const { return {}; }
   bool is_collider() const { return !appearance().shape.empty(); }
-  /// Returns what a run caches besides the skin.
+  /// Returns the points that a run caches besides the skin.
   virtual std::vector<CachedPoints> cached_points() const { return {}; }
   /// Writes the stages between mesh and simulation into a folder. Default: NAME.skin.obj. Errors: file.
   virtual void write_stages(const std::filesystem::path& folder, const Progress& progress) const;
   /// Returns a JSON object for `muslin check --json` and stats.json.
   virtual std::string description_json() const;
-  /// Returns the same as lines of text.
+  /// Returns the description as lines of text.
   virtual std::string description() const;
 
  protected:
-  /// Continues a hash by the name, the vertex range and the number of springs.
+  /// Continues a hash with the name, the vertex range and the number of springs.
   std::uint64_t range_hash(std::uint64_t seed, std::int64_t springs) const;
 };
 
@@ -185,7 +188,7 @@ MUSLIN_API Embedding identity_embedding(std::size_t count);
 /// (aᵢ·dᵢ)², so that ω² ≤ n λ(block)/m, and the step is 2/ω.
 MUSLIN_API double stable_step(std::span<const Mat3> blocks, std::span<const double> masses);
 
-/// Fills in statistics.mass from masses(), in their order.
+/// Fills in statistics.mass, the sum of masses() in their order.
 MUSLIN_API void weigh(Component& component);
 
 }  // namespace muslin

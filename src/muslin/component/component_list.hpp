@@ -44,7 +44,7 @@ class ComponentList {
   const Component& front() const { return *all_.front(); }
   Iterator begin() const { return Iterator(all_.data()); }
   Iterator end() const { return Iterator(all_.data() + all_.size()); }
-  /// Returns the place of a component of the list.
+  /// Returns the index of a component in the list.
   int index_of(const Component& component) const {
     int index = 0;
     while (all_[static_cast<std::size_t>(index)].get() != &component) ++index;

@@ -27,12 +27,12 @@ struct ComponentInputs {
 
 struct ComponentSource {
   std::string name;
-  /// Returns all of the component except its vertex range in the model; never null. Errors: input and file,
-  /// with the place in the scene.
+  /// Returns the component, complete except for its vertex range in the model; never null. Errors: input and
+  /// file, with the place in the scene.
   std::function<std::shared_ptr<Component>(const ComponentInputs&)> build;
   Place place = {};
-  /// True for a component whose size depends on `around`: it is built after all others, and keeps its place
-  /// in the list.
+  /// True for a component whose size depends on `around`: it is built after all others but keeps its place in
+  /// the list.
   bool surrounds = false;
 };
 

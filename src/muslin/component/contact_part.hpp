@@ -27,12 +27,12 @@ struct MUSLIN_API ContactPart {
   std::vector<Vec3i> triangles;            ///< of points
   std::vector<int> faces;                  ///< #triangles, of the mesh; −1 of balls and capsules
   std::vector<ContactPlane> planes;
-  /// Bound d̂ where the scene gives none (scene/build_contact.hpp): the mean edge of the surface, and the
-  /// longest side of the component's bounds [m]. As they are, they do not bound it.
+  /// These bound d̂ if the scene gives none (scene/build_contact.hpp): the mean edge of the surface and the
+  /// longest side of the component's bounds [m]. The default values impose no bound.
   double edge = std::numeric_limits<double>::infinity(), size = 0;
   std::string warning;  ///< for the user; empty: none
 
-  /// Adds a point that is the sum of its entries. Returns its number.
+  /// Adds a point that is the weighted sum of its entries. Returns its number.
   int add_point(std::span<const SurfaceMap::Entry> row, const Vec3& at);
   void add_triangle(const Vec3i& points, int face);
   /// Adds all points of a mesh, carried by `skin`, and its triangles.

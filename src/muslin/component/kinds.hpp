@@ -1,4 +1,4 @@
-// The kinds of components that a scene can name: one row each.
+// Lists the kinds of components that a scene can name, one row per kind.
 #pragma once
 
 #include "muslin/component/body_settings.hpp"
@@ -7,7 +7,7 @@
 
 namespace muslin {
 
-/// Return the source of the component that settings describe. Errors: usage, for a model of no kind.
+/// Return the source of the component that the settings describe. Errors: usage, for an unknown model.
 ComponentSource source_of(const BodySettings& settings);
 ComponentSource source_of(const ColliderSettings& settings);
 

@@ -13,7 +13,7 @@ namespace muslin {
 
 struct SceneFiles {
   std::filesystem::path scene;                                ///< of the scene file
-  std::map<std::string, std::shared_ptr<const Mesh>> meshes;  ///< in memory, before files of the same path
+  std::map<std::string, std::shared_ptr<const Mesh>> meshes;  ///< in memory; they override files
 
   /// Returns a path as written in the scene, resolved against the scene file's folder.
   std::filesystem::path resolve(const std::string& path) const { return scene.parent_path() / path; }

@@ -37,7 +37,7 @@ struct Selection {
   std::optional<SphereShape> sphere;
   std::optional<PlaneShape> plane;
   std::optional<LineShape> line;
-  std::vector<Vec3> nearest;  ///< the vertex nearest to each point, and all that are as near
+  std::vector<Vec3> nearest;  ///< the vertex nearest to each point, and all that are equally near
   Place place;
 };
 

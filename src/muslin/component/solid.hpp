@@ -14,7 +14,7 @@ enum class MeshKind {
 
 /// An open mesh is a holed solid if flat lids over its boundary loops (of perimeter L, at most L²/4π each)
 /// would add less than 2 % to its area. Openings of clothes are larger: the neck, sleeves and hem of a shirt
-/// come to about 8 %.
+/// amount to about 8 %.
 MeshKind kind_of(const Mesh& mesh, const MeshReport& report);
 
 /// Returns the mesh with every face reversed.

@@ -1,4 +1,4 @@
-// Potentials and loads with their names and their roles in the energy balance.
+// PotentialTerm and LoadTerm are potentials and loads with a name and a role in the energy balance.
 #pragma once
 
 #include <memory>

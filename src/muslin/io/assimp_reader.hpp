@@ -8,9 +8,9 @@
 
 namespace muslin {
 
-/// `suffix` is .dae or .fbx. All nodes with their transforms, in metres, y up, as far as the file states its
-/// units and axes; welded by position, since assimp keeps neither vertex order nor seams. Positions have the
-/// precision of float. Errors: input.
+/// `suffix` is .dae or .fbx. Returns all nodes with their transforms, in metres and y up as far as the file
+/// states units and axes. Vertices are welded by position, since assimp keeps neither vertex order nor seams.
+/// Positions have the precision of float. Errors: input.
 MeshFile read_with_assimp(std::string_view bytes, const std::string& suffix, const std::string& file);
 
 }  // namespace muslin

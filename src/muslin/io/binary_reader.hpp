@@ -30,7 +30,7 @@ constexpr std::size_t size_of(Scalar type) {
   return 8;
 }
 
-/// Returns the value of this type and byte order at `bytes`, which holds at least size_of(type) of them.
+/// Returns the value of this type and byte order at `bytes`, which has at least size_of(type) bytes.
 template <class Value>
 Value load(const char* bytes, bool big_endian) {
   unsigned char raw[sizeof(Value)];
@@ -42,7 +42,7 @@ Value load(const char* bytes, bool big_endian) {
   return value;
 }
 
-/// The same for a type known at run time. The conversion is lossless for every type.
+/// Returns a value of a type known at run time. The conversion to double is lossless for every type.
 inline double load_number(const char* bytes, Scalar type, bool big_endian) {
   switch (type) {
     case Scalar::int8:

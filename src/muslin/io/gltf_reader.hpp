@@ -11,7 +11,7 @@ namespace muslin {
 
 /// Returns all meshes of the scene with the transforms of their nodes. Vertices are welded by position within
 /// a node; several nodes become groups. `file` is for messages; external buffers are searched in `folder`,
-/// and refused if that is empty. Errors: input.
+/// and refused if it is empty. Errors: input.
 MeshFile read_gltf(std::string_view bytes, const std::string& file, const std::filesystem::path& folder);
 
 }  // namespace muslin

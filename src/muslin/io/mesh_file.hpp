@@ -10,23 +10,25 @@
 
 namespace muslin {
 
-/// Reads .obj, .ply, .stl, .gltf, .glb, .dae, .fbx; the content must fit the suffix. Positions in double,
-/// polygons, vertex order, texture seams and groups as in the file. The mesh passes require_usable. Formats
-/// that store corners apart (STL, glTF, FBX, Collada) are welded by position, and `note` says so. Errors:
-/// file, if it cannot be read; input, with file and line where there is one, if it is malformed.
+/// Reads .obj, .ply, .stl, .gltf, .glb, .dae, .fbx; the content must match the suffix. Positions are in
+/// double; polygons, vertex order, texture seams and groups are as in the file. The mesh passes
+/// require_usable. Formats that store corners apart (STL, glTF, FBX, Collada) are welded by position, and
+/// `note` says so. Errors: file, if it cannot be read; input, if it is malformed, with file and line if
+/// known.
 struct MeshFile {
   Mesh mesh;
   std::string note;  ///< changes made by the reader, empty if none
 };
 MUSLIN_API MeshFile read_mesh(const std::filesystem::path& path);
 
-/// The same from memory. `suffix` with its dot names the format, `file` is for messages; external buffers of
-/// a .gltf are searched in `folder`, and refused if that is empty.
+/// Reads a mesh from memory. `suffix`, with its dot, names the format, `file` is for messages; external
+/// buffers of a .gltf are searched in `folder`, and refused if that is empty.
 MUSLIN_API MeshFile read_mesh_from(std::string_view bytes, const std::string& suffix, const std::string& file,
                                    const std::filesystem::path& folder = {});
 
-/// Writes .obj or .ply by suffix: same polygons, vertex order, texture coordinates (.obj), groups (.obj).
-/// Written to a temporary file and renamed, so that a full disk leaves no broken file. Errors: file.
+/// Writes .obj or .ply by suffix, with polygons and vertex order, and in .obj texture coordinates and groups.
+/// The file is written under a temporary name and renamed, so that a full disk leaves no broken file. Errors:
+/// file.
 MUSLIN_API void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 MUSLIN_API void write_mesh(const std::filesystem::path& path, const Mesh& mesh, ConstVectors positions);
 

@@ -7,9 +7,9 @@
 
 namespace muslin {
 
-/// `positions` replace those of the mesh: shape (#V by 3). Numbers are the shortest that read back exactly.
-/// Reading the text with read_obj gives vertex order, polygons, texture indices and groups back; vertices of
-/// a group outside its faces are written as points.
+/// `positions` replace those of the mesh: shape (#V by 3). Numbers have the fewest digits that read back
+/// exactly. read_obj restores vertex order, polygons, texture indices and groups from the text; vertices of a
+/// group outside its faces are written as points.
 std::string to_obj(const Mesh& mesh, ConstVectors positions);
 
 /// Returns binary little-endian PLY, positions in double.

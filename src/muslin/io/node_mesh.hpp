@@ -10,16 +10,17 @@
 
 namespace muslin {
 
-/// Call begin_node, then for each of its parts begin_part, all positions, all texture coordinates, all faces.
-/// Equal positions of one node become one vertex; texture coordinates stay with the corners. Errors: input,
-/// naming the file, at a position that cannot be used or a mesh that grows too large.
+/// Call begin_node, then for each of its parts begin_part, position() for all positions, then the functions
+/// for all texture coordinates and all faces. Equal positions of one node become one vertex; texture
+/// coordinates stay with the corners. Errors: input, naming the file, at a position that cannot be used or a
+/// mesh that grows too large.
 class NodeMesh {
  public:
   explicit NodeMesh(std::string file) : file_(std::move(file)), welder_(mesh_.positions) {}
 
   /// `transform` takes the node's coordinates to the scene's. If it mirrors, faces are reversed.
   void begin_node(const std::string& name, const Eigen::Matrix4d& transform);
-  /// `uvs` is 0 or `positions`.
+  /// `uvs`, the number of texture coordinates, is 0 or `positions`.
   void begin_part(std::size_t positions, std::size_t uvs);
   void position(const Vec3& local);
   void uv(const Vec2& uv);

@@ -10,7 +10,7 @@ namespace muslin {
 
 /// `file` is for messages. One object with faces names the mesh; several become groups, as do `g` statements
 /// (a face may belong to several). Points (`p`) make vertex groups. Normals, materials, lines and curves are
-/// left out. Errors: input, with line and column.
+/// ignored. Errors: input, with line and column.
 MeshFile read_obj(std::string_view text, const std::string& file);
 
 }  // namespace muslin

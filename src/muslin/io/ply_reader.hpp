@@ -9,7 +9,7 @@
 namespace muslin {
 
 /// `file` is for messages. Texture coordinates: s t, u v, texture_u texture_v per vertex, or a list
-/// `texcoord` per face. Other elements and properties are left out. Errors: input, with the line in ASCII
+/// `texcoord` per face. Other elements and properties are ignored. Errors: input, with the line in ASCII
 /// files.
 MeshFile read_ply(std::string_view bytes, const std::string& file);
 

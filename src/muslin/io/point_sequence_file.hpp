@@ -9,10 +9,10 @@
 
 namespace muslin {
 
-/// `.pc2`: sample n at start + n·rate frames. `.mdd`: at its own times. `NAME.####.obj`: the files whose
-/// number stands for the #, from the smallest on, one a frame, vertices only. A frame lasts 1/frame_rate;
-/// positions are metres, y up. Errors: file; input, if the file is damaged, has no sample or a position that
-/// is not finite or beyond 1e9 m.
+/// Sample n of a `.pc2` is at start + n·rate frames; an `.mdd` states its times. `NAME.####.obj` are the
+/// files with a number in place of the #, in ascending order, one per frame; only their vertices are read. A
+/// frame lasts 1/frame_rate; positions are metres, y up. Errors: file; input, if the file is damaged, has no
+/// sample or a position that is not finite or beyond 1e9 m.
 PointSequence read_point_sequence(const std::filesystem::path& path, double frame_rate);
 
 /// The two caches from memory; `suffix` is ".pc2" or ".mdd", `file` is for messages.

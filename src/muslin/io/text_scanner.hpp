@@ -1,5 +1,5 @@
-// TextScanner splits a text file into words and numbers, with the place of each for error messages. Any line
-// ends: LF, CRLF, CR.
+// TextScanner splits a text file into words and numbers, with the place of each for error messages. Lines may
+// end in LF, CRLF or CR.
 #pragma once
 
 #include <cstdint>

@@ -54,15 +54,15 @@ void write_vti(const std::filesystem::path& path, const VtkImage& image);
 /// `steps`: time [s] and file name of each, relative to the .pvd.
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& steps);
 
-/// Voxels and rest positions of a .vtu file that write_vtu wrote with hexahedra and double points.
-/// Errors: file; input if it is another kind of file.
+/// Voxels and rest positions of a .vtu file written by write_vtu with hexahedra and double points. Errors:
+/// file; input, if it is another kind of file.
 struct VtkVoxels {
   std::vector<Vec3> points;
   std::vector<std::array<int, 8>> voxels;
 };
 VtkVoxels read_voxels(const std::filesystem::path& path);
 
-/// The vectors as one run of numbers, three each.
+/// Returns the components of the vectors as one list, three per vector.
 std::vector<float> flat(const std::vector<Eigen::Vector3f>& vectors);
 std::vector<double> flat(ConstVectors vectors);
 

@@ -5,8 +5,8 @@
 
 namespace muslin {
 
-/// Fills in `vertices` and `voxel_vertices` from the sorted `voxels`. Throws Error(input) if there are more
-/// vertices than an int counts.
+/// Fills in `vertices` and `voxel_vertices` from the sorted `voxels`. Throws Error(input) if the number of
+/// vertices exceeds the range of int.
 void connect_voxels(Lattice& lattice);
 
 }  // namespace muslin

@@ -21,7 +21,7 @@ struct MUSLIN_API Embedding {
   /// points = J q; q is #V by 3, points #P by 3.
   void apply(ConstVectors q, Vectors points) const;
   /// forces_q += Jᵀ f. The sums run over the points in ascending order, so the bits do not depend on the
-  /// number of threads; it runs in parallel after prepare_transpose().
+  /// number of threads. Runs in parallel after prepare_transpose().
   void add_transpose(ConstVectors f, Vectors forces_q) const;
   /// Lists the points that each of `vertex_count` vertices carries. Call again after changing the weights.
   void prepare_transpose(std::size_t vertex_count);
@@ -32,8 +32,8 @@ struct MUSLIN_API Embedding {
 };
 
 /// Returns the trilinear weights of the voxel each point lies in at rest; a point outside all voxels is
-/// carried by the nearest one (extrapolated). A point in a face shared by voxels is carried by any of them:
-/// the weights are the same. Prepared for the transpose.
+/// carried by the nearest one (extrapolated). A point in a face shared by voxels may be carried by any of
+/// them: the weights are the same. Prepared for the transpose.
 MUSLIN_API Embedding embed(const Lattice& lattice, ConstVectors points);
 
 }  // namespace muslin

@@ -19,8 +19,8 @@
 namespace muslin {
 
 enum class VoxelRule {
-  /// Every voxel whose interior meets the solid: the union contains the mesh, with no unnecessary voxel. A
-  /// surface within 1e-6·width of a voxel's face lies in the face and not in the interior.
+  /// Keeps every voxel whose interior meets the solid: the union contains the mesh, with no unnecessary
+  /// voxel. A surface within 1e-6·width of a voxel's face counts as lying in the face, not in the interior.
   cover,
   threshold,  ///< voxels with distance(centre) < threshold·width; ties within 1e-6·width are out
 };

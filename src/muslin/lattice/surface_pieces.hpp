@@ -1,5 +1,5 @@
-// Cuts a triangle mesh along the faces of a voxel grid to find the voxels that the surface passes and the
-// part of each behind it.
+// Cuts a triangle mesh along the faces of a voxel grid to find the voxels that the surface passes through and
+// the part of each voxel inside the surface.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct VoxelKeys {
   Vec3 centre(const Vec3i& v) const { return origin + width * (v.cast<double>() + Vec3::Constant(0.5)); }
 };
 
-/// A voxel that the surface passes or touches. With n the outward normal, lengths in voxel widths:
+/// A voxel that the surface passes through or touches. n is the outward normal; lengths are in voxel widths.
 struct SurfaceVoxel {
   std::uint64_t key = 0;
   bool crossed = false;  ///< some of the surface lies in the interior, farther than 1e-6 from the faces
@@ -43,12 +43,12 @@ struct SurfaceVoxel {
   double moment = 0;     ///< ∫ n_x (x − x₀) dA, x₀ the voxel's lower face
 };
 
-/// Returns the voxels passed by the triangles, in ascending order of keys, each once. Surface that lies in a
-/// face between two voxels is counted in one of them. Same bits for any thread count.
+/// Returns the voxels that the triangles pass through, in ascending order of keys, each once. Surface that
+/// lies in a face between two voxels is counted in one of them. Same bits for any thread count.
 std::vector<SurfaceVoxel> cut_surface(const Mesh& mesh, const Triangulation& triangulation,
                                       const VoxelKeys& grid, const Progress& progress);
 
-/// Surface this close to a voxel's face [voxel widths] lies in the face.
+/// Surface this close to a voxel's face [voxel widths] counts as lying in the face.
 inline constexpr double face_tolerance = 1e-6;
 
 /// Returns the area [m²] of the mesh inside the closed voxels with ascending `keys`.

@@ -1,4 +1,4 @@
-// Defines the camera and fits its distance to see everything.
+// Camera is a static pinhole camera; CameraFit places it so that all points are visible.
 #pragma once
 
 #include "muslin/core/vectors.hpp"
@@ -9,7 +9,7 @@ struct CameraOptions {
   double azimuth = 30;         ///< [deg] from the z axis towards the x axis
   double elevation = 15;       ///< [deg] above the horizon, −89…89
   double field_of_view = 32;   ///< [deg] of the picture's height, 5…120
-  double distance_factor = 1;  ///< on the distance at which everything just fits
+  double distance_factor = 1;  ///< factor on the distance at which everything just fits
 };
 
 struct Camera {
@@ -27,8 +27,8 @@ struct Camera {
   Vec2 project(const Vec3& point, int width, int height) const;
 };
 
-/// Finds one static camera that sees the points of all frames. The nearest position for the given direction
-/// is exact: each of the four sides of the view touches a point. Two pairs of numbers are kept, not the
+/// Finds one static camera that sees the points of all frames. The position for the given direction is the
+/// nearest possible: each of the four sides of the view touches a point. Only a few sums are stored, not the
 /// points.
 class CameraFit {
  public:

@@ -22,12 +22,12 @@ class Canvas {
  public:
   explicit Canvas(Image& image) : image_(image) {}
 
-  /// Joined segments with round joints and ends; overlaps within one call are inked once.
+  /// Draws joined segments with round joints and ends; overlaps within one call are inked once.
   void polyline(std::span<const Vec2> points, double width, const Ink& ink);
-  /// Several polylines inked as one shape.
+  /// Draws several polylines as one shape.
   void polylines(std::span<const std::vector<Vec2>> lines, double width, const Ink& ink);
   void rectangle(const Vec2& low, const Vec2& high, const Ink& ink);
-  /// Text whose baseline starts, is centred or ends at `at`; `turned` runs it upwards.
+  /// Draws text whose baseline starts, is centred or ends at `at`; with `turned` it runs upwards.
   void text(const Vec2& at, std::string_view text, double size, const Ink& ink, Align align = Align::left,
             bool turned = false);
 

@@ -14,12 +14,12 @@ namespace muslin {
 /// Linear light (radiance or reflectance), red, green, blue.
 using Light = Eigen::Vector3f;
 
-/// sRGB 0…1 to linear light and back (IEC 61966-2-1).
+/// Convert sRGB 0…1 to linear light and back (IEC 61966-2-1).
 Light linear_of_srgb(const Vec3& srgb);
 Vec3 srgb_of_linear(const Light& light);
 
-/// Linear up to 0.6, then a shoulder that reaches 1 only in the limit, so that highlights never clip and
-/// the colours below them stay as chosen by the user.
+/// Applies the tone curve: linear up to 0.6, then a shoulder that approaches 1, so that highlights never clip
+/// and darker colours stay as the user chose them.
 Light tone_curve(const Light& radiance);
 /// Returns the radiance that tone_curve maps to `shown` (each below 1).
 Light inverse_tone_curve(const Light& shown);
@@ -31,8 +31,8 @@ enum class ColourMap {
   diverging,   ///< blue, light grey, red: lightness falls evenly to both sides of the middle
 };
 
-/// Returns the sRGB of t in 0…1 (clamped). Made of straight lines in OKLab (Ottosson 2020), where equal steps
-/// look equal.
+/// Returns the sRGB colour of t in 0…1 (clamped). The map is piecewise linear in OKLab (Ottosson 2020), where
+/// equal steps look equal.
 Vec3 map_colour(ColourMap map, double t);
 
 /// Colour scale of per-vertex numbers, with the text of the legend.

@@ -34,7 +34,7 @@ struct FigureText {
 struct Figure {
   double width = 0;
   double height = 0;
-  std::string title;  ///< for readers that cannot see it
+  std::string title;  ///< alternative text
   std::vector<std::variant<FigureLine, FigureBox, FigureText>> items;
 };
 

@@ -12,7 +12,7 @@ namespace muslin {
 /// Row by row from the top, three bytes (red, green, blue; sRGB) a pixel.
 struct Image {
   Image() = default;
-  /// Filled with one colour. Throws Error(usage) unless both sides are 1…16384.
+  /// Makes an image filled with one colour. Throws Error(usage) unless both sides are 1…16384.
   Image(int width, int height, std::array<std::uint8_t, 3> colour = {255, 255, 255});
 
   std::uint8_t* pixel(int x, int y) { return pixels.data() + offset(x, y); }
@@ -28,8 +28,8 @@ struct Image {
   }
 };
 
-/// Replaces `path` whole or not at all: written beside it under another name, then renamed.
-/// Throws Error(file) if the disk is full or the place cannot be written.
+/// Replaces `path` completely or not at all: the file is written beside it under another name, then renamed.
+/// Throws Error(file) if the disk is full or `path` cannot be written.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace muslin

@@ -13,16 +13,16 @@ namespace muslin {
 
 struct MovieOptions {
   double frame_rate = 24;          ///< [1/s]
-  int quality = 18;                ///< x264's constant rate factor: 0 is lossless, 18 looks so, 51 is worst
+  int quality = 18;  ///< x264's constant rate factor: 0 is lossless, 18 looks lossless, 51 is worst
   std::string program = "ffmpeg";  ///< name or path; looked up in PATH
 };
 
 /// An H.264 file (yuv420p, index in front) written frame by frame. It appears under its name when finish()
-/// returns; until then, and if anything fails, it stays a hidden file beside it that is removed.
+/// returns; until then it is a hidden file beside it, which is removed if anything fails.
 class Movie {
  public:
-  /// Starts ffmpeg for pictures of this size (an odd side is widened by repeating the last pixel).
-  /// Throws Error(file) if ffmpeg is missing or the place cannot be written, Error(usage) on bad options.
+  /// Starts ffmpeg for pictures of this size (an odd side is widened by repeating the last pixel). Throws
+  /// Error(file) if ffmpeg is missing or `path` cannot be written, Error(usage) on bad options.
   Movie(const std::filesystem::path& path, int width, int height, const MovieOptions& options = {});
   ~Movie();
   Movie(const Movie&) = delete;

@@ -30,7 +30,7 @@ struct Plot {
 
 /// Plots kinetic, elastic and potential energy, work of the external forces, dissipated energy [J], and their
 /// balance. Energies count from the first row; the balance, kinetic + elastic + potential + dissipated −
-/// work, would be 0 without numerical error. A prefix (mJ, kJ, MJ) is chosen to suit.
+/// work, would be 0 without numerical error. A suitable prefix (mJ, kJ, MJ) is chosen.
 Plot energy_plot(std::span<const double> time, std::span<const double> kinetic,
                  std::span<const double> elastic, std::span<const double> potential,
                  std::span<const double> work, std::span<const double> dissipated);
@@ -38,7 +38,7 @@ Plot energy_plot(std::span<const double> time, std::span<const double> kinetic,
 /// Plots the largest stretch over time [s], given as length / rest length: 1.05 shows as 5 %.
 Plot stretch_plot(std::span<const double> time, std::span<const double> ratio);
 
-/// Each throws Error(usage) where a series is not as long as x or the size is out of 200…8000 points.
+/// Each throws Error(usage) if a series and x differ in length or the size is outside 200…8000 points.
 std::string plot_svg(const Plot& plot);
 Image plot_image(const Plot& plot, double pixels_per_point = 2);
 

@@ -23,7 +23,7 @@ SmoothingGroups smoothing_groups(const std::vector<Vec3i>& triangles, ConstVecto
 
 class RenderMesh {
  public:
-  /// Throws Error(usage) on indices or array sizes that do not fit.
+  /// Throws Error(usage) if indices are out of range or array sizes do not match.
   explicit RenderMesh(const Surface& surface);
 
   enum class Layer { front, back, rim };

@@ -9,9 +9,9 @@
 
 namespace muslin::sampling {
 
-/// Returns the index-th point in [0, 1)² of a sequence of multiples of two irrational numbers, given as steps
-/// of 2⁻³² (Roberts 2018: inverse powers of the root of gᵈ⁺¹ = g + 1 fill d dimensions evenly). Whole numbers
-/// wrap around without loss at any index.
+/// Returns point number `index` in [0, 1)² of a sequence of multiples of two irrational numbers, given in
+/// units of 2⁻³² (Roberts 2018: inverse powers of the root of gᵈ⁺¹ = g + 1 fill d dimensions evenly).
+/// Integers wrap around without loss at any index.
 inline Eigen::Vector2f multiples(std::uint32_t index, std::uint32_t step_x, std::uint32_t step_y) {
   const std::uint32_t a = 0x80000000u + index * step_x;
   const std::uint32_t b = 0x80000000u + index * step_y;
@@ -22,8 +22,9 @@ inline Eigen::Vector2f pixel_point(std::uint32_t index) { return multiples(index
 inline Eigen::Vector2f sun_point(std::uint32_t index) { return multiples(index, 2700274807u, 2313257605u); }
 inline Eigen::Vector2f sky_point(std::uint32_t index) { return multiples(index, 3242174889u, 2447445415u); }
 
-/// Returns the place of a pixel along the Hilbert curve through its 64 × 64 block. Numbering samples along it
-/// makes neighbouring pixels share the evenness of the sequences: noise is fine-grained instead of clumped.
+/// Returns the place of a pixel along the Hilbert curve through its 64 × 64 block. With samples numbered
+/// along the curve, neighbouring pixels use consecutive points of the sequences, which makes the noise
+/// fine-grained instead of clumped.
 inline std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) {
   std::uint32_t index = 0;
   for (std::uint32_t side = 32; side > 0; side /= 2) {

@@ -21,7 +21,7 @@ enum class Pattern {
 /// Optical properties of a surface. Colours are sRGB 0…1.
 struct Look {
   Vec3 colour = Vec3(0.70, 0.22, 0.18);
-  std::optional<Vec3> back_colour;  ///< of the side the face normals point away from; none = same
+  std::optional<Vec3> back_colour;  ///< of the back of the faces; none: the same
   double roughness = 0.6;           ///< Oren and Nayar's σ [rad]: 0 is chalk-smooth, 0.6 is woollen
   double sheen = 0;                 ///< 0…1, the bright rim of fibres seen edge on
   double gloss = 0;                 ///< 0…1, highlights, as of rubber

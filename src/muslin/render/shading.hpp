@@ -21,7 +21,7 @@ struct Material {
   float pattern_period;
 };
 
-/// The sun: a bright disc, and the sky: a dome that is brighter and bluer above.
+/// The sun is a bright disc; the sky is a dome that is brighter and bluer above.
 struct Lighting {
   Eigen::Vector3f to_sun = Eigen::Vector3f(0, 1, 0);
   float sun_spread = 0.055f;               ///< tangent of the disc's angular radius

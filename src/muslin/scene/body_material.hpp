@@ -8,12 +8,13 @@
 
 namespace muslin {
 
-// The key for each model, of BodySettings. They check and write the material; read_body_material reads it.
+// Return the key for each model, of BodySettings. The keys check and write the material; read_body_material
+// reads it.
 schema::Declaration lattice_material_key();
 schema::Declaration shell_material_key();
 
-/// Reads the material under `material` of a body, whose other settings have been read. `folder` is that of
-/// the scene file. Errors: input, file.
+/// Reads the material under `material` of a body, whose other settings have been read. `folder` is the scene
+/// file's folder. Errors: input, file.
 void read_body_material(const TomlTable& table, const std::filesystem::path& folder, BodySettings& body);
 
 }  // namespace muslin

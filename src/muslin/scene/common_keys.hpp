@@ -1,5 +1,5 @@
-// Declares keys that several tables of a scene have, and reads what depends on the rest of the scene: names,
-// and which body is meant.
+// Declares keys that several tables of a scene have, and resolves names, including the name of the body that
+// a table refers to.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ namespace muslin {
 /// characters.
 void require_name(const std::string& name, const Place& place);
 
-/// The key `name`; `otherwise` states the name where it is not given.
+/// The key `name`; `otherwise` describes the default name.
 template <class S>
 schema::Declaration name_key(std::string otherwise) {
   return schema::custom<S>(
@@ -46,7 +46,7 @@ schema::Declaration friction_key(std::optional<double> S::* member) {
       .means("Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean");
 }
 
-/// `from` and `until`; `otherwise` states the end where it is not given. check_window is their rule.
+/// The keys `from` and `until`; `otherwise` describes the default end. check_window is their rule.
 template <class S>
 std::vector<schema::Key> window_keys(double S::* from, double S::* until, const char* from_means,
                                      const char* until_means, const char* otherwise) {
@@ -80,18 +80,17 @@ schema::Declaration keyed_number_key(std::string name, KeyedNumber S::* member, 
 schema::Declaration motion_key();
 const schema::Table& motion_keyframe_table();  ///< of Motion::Key
 
-/// Returns the names of what has mass: bodies, and colliders with a density.
+/// Returns the names of all that have mass: bodies, and colliders with a density.
 std::vector<std::string> movable_names(const Scene& scene);
 /// True if a collider has this name.
 bool is_rigid(const Scene& scene, const std::string& name);
 /// Throws Error(input) if the scene has nothing that moves.
 void require_movable(const Scene& scene);
-/// Replaces an empty name by that of the only body, or, if `all_allowed`, leaves it empty for all. Errors:
-/// input.
+/// Replaces an empty name by the name of the only body or, if `all_allowed`, leaves it empty, which means all
+/// bodies. Errors: input.
 void resolve_body(const TomlTable& table, const Scene& scene, bool all_allowed, std::string& body);
 
-/// Gives the item its name if it has none, and refuses one that `others` have. Items are of the lists
-/// [[kind]], others of [[other_kind]].
+/// Gives the item a default name if it has none. Throws Error(input) if one of `others` has the same name.
 void complete_name(const TomlTable& table, const std::string& fallback, std::string& name);
 [[noreturn]] void refuse_name(const TomlTable& table, const std::string& other_kind, const std::string& kind,
                               const std::string& name);

@@ -1,4 +1,4 @@
-// Lists the words of the scene file for the choices of its settings, in the order of their enumerations.
+// Lists the words of the scene file for each enumeration, in the enumeration's order.
 #pragma once
 
 #include <string>
@@ -15,7 +15,8 @@ const std::vector<std::string>& bracing_names();          ///< Bracing
 const std::vector<std::string>& mass_names();             ///< BodySettings::Mass
 const std::vector<std::string>& boundary_spring_names();  ///< BodySettings::BoundarySprings
 const std::vector<std::string>& force_type_names();       ///< ForceSettings::Type
-/// Returns the key of the value of each ForceSettings::Type: acceleration, force, velocity.
+/// Returns the name of the key that holds the value of each ForceSettings::Type: acceleration, force,
+/// velocity.
 const std::vector<std::string>& force_value_names();
 
 template <class Enumeration>

@@ -1,5 +1,5 @@
-// A pressure acts inside a shell that is closed or nearly closed: constant, over time, or that of a fixed
-// amount of gas. docs/theory/pressure.md.
+// PressureSettings describes a pressure inside a closed or nearly closed shell: constant, keyframed, or that
+// of a fixed amount of gas. docs/theory/pressure.md.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ struct Table;
 
 struct MUSLIN_API PressureSettings {
   std::string name, body;
-  KeyedNumber pressure;  ///< excess over the outside [Pa]; of a gas: where it fills the volume at rest
-  bool gas = false;      ///< a fixed amount of gas at a constant temperature, in place of a fixed pressure
+  KeyedNumber pressure;  ///< excess over the outside [Pa]; of a gas: at the rest volume
+  bool gas = false;      ///< a fixed amount of gas at constant temperature, not a given pressure
   double atmosphere = 101325;                                        ///< outside, for a gas [Pa]
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Place place;
@@ -34,7 +34,7 @@ void finish_pressure(const TomlTable& table, std::size_t index, PressureSettings
                      const Scene& scene);
 
 /// Adds the pressures of the scene to the model. Errors: input, for a body whose vertices are not those of
-/// its mesh, a surface that has no inside, or a gas without room.
+/// its mesh, a surface that has no inside, or a gas without volume.
 void build_pressures(Model& model);
 
 }  // namespace muslin

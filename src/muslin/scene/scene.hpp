@@ -1,5 +1,5 @@
-// Scene holds the user's scene, checked and with defaults filled in. Settings store their place in the file
-// for later error messages.
+// Scene holds the settings of a scene, checked and with defaults filled in. Settings store their place in the
+// file for later error messages.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ struct MUSLIN_API TimeSettings {
 };
 
 struct ContactSettings {
-  bool given = false;              ///< true if the scene has the table
+  bool given = false;              ///< true if the scene has [contact]
   std::optional<double> distance;  ///< d̂ [m]; default: see build_contact.hpp
   double friction = 0.3;           ///< Coulomb's μ of bodies without their own
   Place place;
@@ -93,7 +93,7 @@ struct Scene {
   std::vector<ForceSettings> forces;
   std::vector<PressureSettings> pressures;
   std::vector<ProbeSettings> probes;
-  /// Components of a program's own, built after those above. Pins, forces and probes may name them.
+  /// Components that a program adds, built after those above. Pins, forces and probes may name them.
   std::vector<ComponentSource> components;
   /// In-memory meshes, by their path in the scene: for programs that make their own. They take precedence
   /// over files of that path.

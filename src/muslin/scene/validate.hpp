@@ -1,5 +1,5 @@
-// validate checks scenes that a program has made. Scenes read from a file have been checked already, with the
-// place of each number.
+// validate checks scenes that a program has made. Scenes read from a file were checked on reading, with the
+// place of each value.
 #pragma once
 
 #include "muslin/api.hpp"
@@ -7,9 +7,9 @@
 
 namespace muslin {
 
-/// Returns if build_model can build the scene as far as its settings are concerned: numbers are finite and
-/// within the ranges of the scene file, names are unique, what is named exists, what a model needs is given.
-/// Meshes are checked where they are read. Errors: input, for the first setting that is wrong, naming it.
+/// Throws Error(input), naming the setting, for the first setting that build_model cannot use: a number that
+/// is not finite or outside the range of the scene file, a name that is not unique, a reference to a missing
+/// name, or a missing required setting. Meshes are checked when they are read.
 MUSLIN_API void validate(const Scene& scene);
 
 }  // namespace muslin

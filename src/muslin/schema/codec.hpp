@@ -125,11 +125,11 @@ struct ColourCodec {
   void check(const Key& key, const Vec3& v, const Subject& subject) const;
 };
 
-/// Returns the tables of a list such as [[pin]]. Errors: input, if it is no list.
+/// Returns the tables of a list such as [[pin]]. Errors: input, if it is not a list.
 const std::vector<TomlValue>& section_values(const std::string& name, const TomlTable& top);
 /// Returns the name of a table of a list in messages: `[[body]] flag`, or with its number.
 std::string section_title(const std::string& name, const TomlValue& value, std::size_t index);
-/// Returns the tables of a list of keyframes, at least one.
+/// Returns the tables of a list of keyframes. Errors: input, if there is none.
 const std::vector<TomlValue>& keyframe_values(const std::string& name, const TomlTable& owner);
 /// Throws Error(input) unless time > before.
 void require_later(const TomlTable& keyframe, double before, double time);

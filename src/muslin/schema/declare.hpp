@@ -2,7 +2,7 @@
 //
 //   number("duration", &TimeSettings::duration).unit("s").range({0, 1e9, true}).means("simulated time")
 //
-// A member may be an std::optional: then the key has no value where it is not given.
+// A member may be an std::optional: then the key has no value if it is not given.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@
 
 namespace muslin::schema {
 
-/// A key in the making.
+/// A key under construction.
 class Declaration {
  public:
   explicit Declaration(Key key) : key_(std::move(key)) {}
@@ -36,10 +36,10 @@ class Declaration {
   Declaration& unit(std::string unit) { return set(&Key::unit, std::move(unit)); }
   Declaration& range(Range range) { return set(&Key::range, range); }
   Declaration& means(std::string meaning) { return set(&Key::meaning, std::move(meaning)); }
-  /// States the default where it is not a constant.
+  /// States the default in words if it is not a constant.
   Declaration& otherwise(std::string words) { return set(&Key::otherwise, std::move(words)); }
   Declaration& may_change_on_resume() { return set(&Key::may_change_on_resume, true); }
-  /// The key must be given; `remedy` says what to do, if the type does not say it well enough.
+  /// Makes the key required; `remedy` tells the user what to do if the type is not clear enough.
   Declaration& required(std::string remedy = {}) {
     key_.missing = std::move(remedy);
     return set(&Key::required, true);
@@ -56,13 +56,13 @@ class Declaration {
     key_.conflicts.push_back({std::move(other), std::move(problem), std::move(remedy)});
     return *this;
   }
-  /// The resolved scene has the key only where the predicate holds.
+  /// Shows the key in the resolved scene only where the predicate holds.
   template <class S, class Predicate>
   Declaration& shown_if(Predicate predicate) {
     key_.shown = [predicate](const void* s) -> bool { return predicate(*static_cast<const S*>(s)); };
     return *this;
   }
-  /// The resolved scene has this value in place of the member's.
+  /// Shows this value in the resolved scene in place of the member.
   template <class S, class Value>
   Declaration& shown_as(Value value) {
     key_.write = [value](const Key& key, const void* s, TomlValue& out) {
@@ -81,7 +81,7 @@ class Declaration {
   Key key_;
 };
 
-/// A key with functions of its own: read(key, table, settings) and write(key, settings, table).
+/// A key with custom functions read(key, table, settings) and write(key, settings, table).
 template <class S, class Read, class Write>
 Declaration custom(std::string name, std::vector<Type> types, Read read, Write write) {
   Key key;
@@ -135,7 +135,7 @@ template <class S, class T>
 Declaration number(std::string name, T S::* member) {
   return stored(std::move(name), member, NumberCodec{});
 }
-/// Without an upper bound of the range, the largest of 64 bits.
+/// Without an upper bound of the range, any 64-bit integer is allowed.
 template <class S, class T>
 Declaration whole_number(std::string name, T S::* member) {
   return stored(std::move(name), member, WholeNumberCodec{});
@@ -148,7 +148,7 @@ template <class S, class T>
 Declaration text(std::string name, T S::* member) {
   return stored(std::move(name), member, TextCodec{});
 }
-/// `choices` are in the order of the enumeration.
+/// `choices` must be in the order of the enumeration.
 template <class S, class T>
 Declaration word(std::string name, T S::* member, std::vector<std::string> choices) {
   Key key = stored(std::move(name), member, WordCodec{});
@@ -170,7 +170,7 @@ Declaration colour(std::string name, T S::* member) {
   return stored(std::move(name), member, ColourCodec{}).unit("sRGB 0 to 1");
 }
 
-/// A path; empty: none. `place` gets where it is written.
+/// A path; empty: none. `place` receives its place in the file.
 template <class S>
 Declaration path(std::string name, std::string S::* member, Place S::* place) {
   Key key = custom<S>(
@@ -187,7 +187,7 @@ Declaration path(std::string name, std::string S::* member, Place S::* place) {
   return Declaration(std::move(key));
 }
 
-/// A table in a table. In messages about settings of a program its keys stand without its name.
+/// A table in a table. Messages about settings made by a program name its keys without the table's name.
 template <class S, class T>
 Declaration nested(std::string name, T S::* member, const Table& (*keys)()) {
   constexpr bool optional = Optional<T>::value;
@@ -242,7 +242,7 @@ Declaration section(std::string name, T S::* member, const Table& (*keys)(), Fin
 inline constexpr auto nothing = [](const TomlTable&, const auto&) {};
 
 /// A list of tables at the top of the file, such as [[pin]]. finish(table, index, item, settings) completes
-/// each item before it is appended: with what depends on the rest of the scene.
+/// each item, with data that depends on the rest of the scene, before it is appended.
 template <class S, class T, class Finish>
 Declaration sections(std::string name, std::vector<T> S::* member, const Table& (*keys)(), Finish finish) {
   Key key = custom<S>(
@@ -270,7 +270,7 @@ Declaration sections(std::string name, std::vector<T> S::* member, const Table& 
   return Declaration(std::move(key));
 }
 
-/// A list of tables that each have a `time` after that of the one before.
+/// A list of tables whose `time` ascends strictly.
 template <class S, class T>
 Declaration keyframes(std::string name, std::vector<T> S::* member, const Table& (*keys)()) {
   Key key = custom<S>(
@@ -304,7 +304,7 @@ Declaration keyframes(std::string name, std::vector<T> S::* member, const Table&
   return Declaration(std::move(key));
 }
 
-/// Lifts a key to settings that hold, as a member, those it was declared for.
+/// Adapts a key of settings Inner to settings Outer that have them as a member.
 template <class Outer, class Inner>
 Key within(Inner Outer::* member, Key key) {
   const auto inner = [member](const void* s) -> const void* {

@@ -37,10 +37,10 @@ struct Key {
   std::vector<std::string> choices;  ///< words
   std::size_t count = 0;             ///< of `points`; 0: any
   std::string meaning;
-  std::string otherwise;  ///< the default in words, where it is not a constant
+  std::string otherwise;  ///< the default in words if it is not a constant
   bool required = false;
-  std::vector<std::string> unless;  ///< not required beside any of these keys
-  std::string missing;              ///< remedy where a required key is missing; empty: by the type
+  std::vector<std::string> unless;  ///< not required if any of these keys is given
+  std::string missing;              ///< remedy if a required key is missing; empty: by the type
   bool may_change_on_resume = false;
   const Table& (*table)() = nullptr;  ///< the keys of a table, or of each table of a list
 
@@ -51,17 +51,17 @@ struct Key {
   struct Conflict {
     std::string other, problem, remedy;
   };
-  std::vector<Conflict> conflicts;  ///< keys beside which this one may not be given
+  std::vector<Conflict> conflicts;  ///< keys that exclude this one
 
-  // Each gets the key itself and the settings, of the type for which the key was declared.
-  /// Stores the value of the table's key, which is there. Errors: input, at its place.
+  // Each receives the key and the settings, of the type for which the key was declared.
+  /// Stores the value of the table's key, which must be present. Errors: input, at its place.
   std::function<void(const Key&, const TomlTable&, void*)> read;
-  /// Appends the value to a table; nothing where there is none.
+  /// Appends the value, if there is one, to a table.
   std::function<void(const Key&, const void*, TomlValue&)> write;
-  /// Throws Error(input) if the settings hold a value that could not be read.
+  /// Throws Error(input) if the settings hold a value that reading would refuse.
   std::function<void(const Key&, const void*, const Subject&)> check;
-  std::function<bool(const void*)> given;  ///< whether there is a value; null: always
-  std::function<bool(const void*)> shown;  ///< whether the resolved scene has the key; null: always
+  std::function<bool(const void*)> given;  ///< true if there is a value; null: always
+  std::function<bool(const void*)> shown;  ///< true if the resolved scene has the key; null: always
 };
 
 /// Returns the key's value in words, for messages: "a number above 0 [m]".

@@ -8,11 +8,11 @@
 namespace muslin::schema {
 
 /// Returns a JSON Schema (draft 2020-12) with descriptions, units, ranges, defaults and choices. Each variant
-/// of a table is an object of its own, so that other keys are refused.
+/// of a table is a separate object, so that keys of other variants are refused.
 std::string json_schema(const Table& table, const std::string& title);
 
-/// Returns a Markdown table of the keys of each table, between the lines `<!-- schema: NAME -->` and
-/// `<!-- end -->`. Range ends beyond all real scenes are left out.
+/// Returns a Markdown table of the keys of each table, between the lines `<!-- schema: NAME -->` and `<!--
+/// end -->`. Range limits that no real scene reaches are left out.
 std::string markdown(const Table& table);
 
 /// Returns the source of a Python module with a TypedDict for each table, and for each variant.

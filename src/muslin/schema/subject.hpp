@@ -1,4 +1,4 @@
-// Subject is what a check is about: a table of a file, or settings that a program has made.
+// Subject is the object of a check: a table of a file, or settings that a program has made.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Table is a list of keys that stand together in a scene or material file, read into one struct of settings.
+// Table is a list of keys of one TOML table in a scene or material file, read into one struct of settings.
 #pragma once
 
 #include <cassert>
@@ -15,11 +15,11 @@
 
 namespace muslin::schema {
 
-/// The further keys of a table where its choosing key is `word`.
+/// Further keys of a table that apply if its choosing key is `word`.
 struct Variant {
   std::string word;
-  /// Names the things it makes, such as "shells". If given, a key of another variant is an error that says
-  /// so; otherwise it is an unknown key.
+  /// Names the objects of this variant, such as "shells". If given, a key of another variant is reported as
+  /// such; otherwise it is an unknown key.
   std::string plural;
   const Table& (*table)();
 };
@@ -38,10 +38,10 @@ struct Table {
   std::function<void(const Place&, void*)> set_place;  ///< null: the settings have no place
   std::function<std::size_t(const void*)> chosen;      ///< the index of the variant
   std::function<void(const TomlTable&, void*)>
-      complete;  ///< fills what is derived from other keys; may be null
+      complete;  ///< sets values derived from other keys; may be null
   std::vector<std::function<void(const void*, const Subject&)>> rules;  ///< of several keys
 
-  /// Opens a table of a file: refuses unknown keys and those of other variants. Errors: input.
+  /// Opens a table of a file; refuses unknown keys and keys of other variants. Errors: input.
   TomlTable open(const TomlValue& value, const std::string& title) const;
   /// Reads an opened table. Keys that are not given keep the values that `settings` has. Errors: input.
   template <class Settings>
@@ -49,7 +49,7 @@ struct Table {
     assert(type == nullptr || *type == typeid(Settings));
     read_erased(table, &settings);
   }
-  /// Throws Error(input) for the first setting that could not be read from a file.
+  /// Throws Error(input) for the first setting that a file could not have set.
   template <class Settings>
   void check(const Settings& settings, const Subject& subject) const {
     assert(type == nullptr || *type == typeid(Settings));
@@ -64,7 +64,7 @@ struct Table {
 
   /// Returns the names of all keys, those of all variants included.
   std::vector<std::string> names() const;
-  /// Returns the keys where this variant is chosen, in their order.
+  /// Returns the keys that apply if this variant is chosen, in their order.
   std::vector<const Key*> keys_of(std::size_t variant) const;
   const Key* find(std::string_view name) const;  ///< in any variant; null: none
 
@@ -73,7 +73,7 @@ struct Table {
   TomlValue write_erased(const void* settings) const;
 };
 
-/// Returns the constant that a key has where it is not given; nothing if there is none or it is required.
+/// Returns the constant default of a key; nothing if it has none or is required.
 std::optional<TomlValue> default_of(const Table& table, const Key& key);
 
 /// True if a setting of the resolved scene may change when a run is resumed. `path` is dotted, such as

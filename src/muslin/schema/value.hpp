@@ -1,4 +1,4 @@
-// Makes TomlValues, in which settings are written out.
+// Makes TomlValues, which hold the settings of a resolved scene, and converts them to text.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ inline TomlValue null() { return real(std::numeric_limits<double>::quiet_NaN());
 /// Appends an entry to a table.
 void append(TomlValue& table, std::string key, TomlValue value);
 
-/// Returns the value as JSON, indented by two spaces. Bytes that are no UTF-8 become U+FFFD.
+/// Returns the value as JSON, indented by two spaces. Bytes that are not UTF-8 become U+FFFD.
 std::string to_json(const TomlValue& value);
 
-/// Returns the value as in a TOML file, on one line.
+/// Returns the value as TOML, on one line.
 std::string to_toml(const TomlValue& value);
 
 }  // namespace muslin::schema

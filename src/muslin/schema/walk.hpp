@@ -11,7 +11,7 @@
 
 namespace muslin::schema {
 
-/// The keys of a table where one of its variants is chosen; of a table without variants, all.
+/// The keys of a table for one of its variants; all keys of a table without variants.
 struct Shape {
   const Table* table = nullptr;
   std::size_t variant = Table::none;
@@ -28,7 +28,7 @@ inline std::vector<Shape> shapes_of(const Table& table) {
   return shapes;
 }
 
-/// Returns the table and those in it, each once, an owner before what it holds.
+/// Returns the table and all tables in it, each once, every table before those in it.
 inline std::vector<const Table*> tables_in(const Table& root) {
   std::vector<const Table*> tables = {&root};
   for (std::size_t i = 0; i < tables.size(); ++i) {

@@ -33,11 +33,11 @@ struct Shell {
   std::vector<int> faces;            ///< #T, the polygon each comes from
   std::vector<double> areas;         ///< #T, at rest [m²]
   std::vector<Mat2> inverses;        ///< #T, inverse of the rest edges (columns) in (warp, weft) [1/m]
-  std::vector<Hinge> hinges;         ///< of every edge: its first triangle with each further one
+  std::vector<Hinge> hinges;         ///< of every edge: its first triangle with every other one
   std::vector<double> vertex_areas;  ///< #V, a third of each adjacent triangle at rest [m²]
   double area = 0;                   ///< at rest [m²]
   double mean_edge = 0;              ///< at rest [m]
-  std::size_t odd_faces = 0;         ///< triangles perpendicular to the given warp, which got another one
+  std::size_t odd_faces = 0;         ///< triangles perpendicular to the given warp; they got another
 
   std::size_t vertex_count() const { return vertex_areas.size(); }
 };

@@ -1,4 +1,4 @@
-// One step of a run: (model, state, length) → (state, report).
+// advance makes one step of a run: (model, state, length) → (state, report).
 #pragma once
 
 #include <cstdint>
@@ -16,48 +16,49 @@
 
 namespace muslin {
 
-/// A step that cannot be solved is halved so often.
+/// A step that cannot be solved is halved at most this many times.
 constexpr int max_halvings = 8;
 
-/// Farther from the origin than the distance to the sun is no place for cloth: it was shot there by a force
-/// or a speed that nobody meant. Caches hold floats, which end at 3e38 m.
+/// Coordinates beyond the distance to the sun are taken for an error in a force or speed. Caches store
+/// floats, whose largest value is 3e38.
 constexpr double farthest = 1.5e11;  // [m]
 
-/// The first vertex whose position is not finite or beyond `farthest`, −1 if there is none.
+/// Returns the first vertex whose position is not finite or beyond `farthest`, −1 if there is none.
 int vertex_out_of_range(ConstVectors x);
 
-/// Workspaces of the steps of one run. No result depends on them: everything is made anew after `forget`.
-/// Whoever puts another value into the state's contact calls `forget` as well.
+/// Workspaces of the steps of one run. No result depends on them: everything is rebuilt after `forget`. Code
+/// that changes the state's contact must also call `forget`.
 class Scratch {
  public:
   void forget();
-  /// Drops the guard alone.
+  /// Drops only the guard.
   void forget_guard();
-  /// The guard over state.contact; null if nothing can touch. Errors: those of ContactGuard.
+  /// Returns the guard of state.contact; null if nothing can touch. Errors: as the constructor of
+  /// ContactGuard.
   ContactGuard* guard(const Model& model, RunState& state);
-  /// Brings the vectors to the model's size.
+  /// Resizes the vectors to the model.
   void prepare(const Model& model);
-  RunCosts costs() const;  ///< since this was made, whatever was forgotten
+  RunCosts costs() const;  ///< since construction, forgotten workspaces included
 
   Stepper stepper;
   std::vector<std::uint8_t> fixed;  ///< #V
   std::vector<Vec3> targets;        ///< #V by 3
-  std::vector<double> masses;       ///< #V, as the solver wants them: none is 0 [kg]
+  std::vector<double> masses;       ///< #V, for the solver: none is 0 [kg]
   ModelParts parts;
   double linearize_seconds = 0, solve_seconds = 0;
 
  private:
   std::unique_ptr<ContactGuard> guard_;
-  RunCosts earlier_;  ///< of guards that are gone
+  RunCosts earlier_;  ///< of earlier guards
 };
 
-/// Advances `state.motion` by `length` [s], with all that goes along with it. A step that cannot be solved is
-/// halved; if it was not made in the end, the report says why and `state` is what it was. So it is after an
-/// exception, of a load for example. Frames are left to the caller.
+/// Advances `state.motion` by `length` [s], and with it holds, contact, energy and counts. A step that cannot
+/// be solved is halved. If that fails too, the report states the failure and `state` is unchanged; it is also
+/// unchanged after an exception, for example from a load. The caller handles frames.
 StepReport advance(const Model& model, const Terms& terms, RunState& state, double length, Scratch& scratch);
 
-/// By part, the root mean square of the accelerations that fields and loads from outside cause in the step
-/// that `context` begins [m/s²]. `loads`: what the loads amount to in it.
+/// Returns, by part, the root mean square of the accelerations that fields and external loads cause in the
+/// step of `context` [m/s²]. `loads`: the potentials of the loads in this step.
 std::vector<double> driving_accelerations(const Model& model, const Terms& terms,
                                           std::span<const std::unique_ptr<Potential>> loads,
                                           ConstVectors positions, const Scratch& scratch);

@@ -1,6 +1,7 @@
-// The bytes of a checkpoint: a header that can be read without the model, named arrays (name, layout of an
-// element, its size, how many, the elements) in the machine's (little) byte order, and a checksum over
-// everything before it. The structs of the state name their arrays (potential/state_arrays.hpp).
+// Reads and writes the bytes of a checkpoint: a header that can be read without the model, named arrays
+// (name, layout of an element, size of an element, number of elements, elements) in little-endian byte order,
+// and a checksum over everything before it. The structs of the state name their arrays
+// (potential/state_arrays.hpp).
 #pragma once
 
 #include <bit>
@@ -19,18 +20,18 @@ namespace muslin {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-/// What a checkpoint says about itself.
+/// The header of a checkpoint.
 struct CheckpointHeader {
   std::uint64_t fingerprint = 0;     ///< of the model it belongs to
   std::int64_t frame = 0;            ///< the last finished frame
   std::int64_t steps = 0;            ///< steps done since then
-  std::int64_t steps_per_frame = 0;  ///< of the run that wrote it, 0 if it chose its steps
+  std::int64_t steps_per_frame = 0;  ///< of the run that wrote it, 0 if the step is adaptive
 };
 
-/// Throws Error(input) if the bytes are no checkpoint, of another version, cut off or damaged.
+/// Throws Error(input) if the bytes are not a checkpoint, or are of another version, truncated or damaged.
 CheckpointHeader read_checkpoint_header(std::span<const std::uint8_t> bytes);
 
-/// Writes arrays to a checkpoint, each under a name of its own.
+/// Writes arrays to a checkpoint, each under a unique name.
 class CheckpointWriter {
  public:
   explicit CheckpointWriter(const CheckpointHeader& header);
@@ -42,7 +43,7 @@ class CheckpointWriter {
   void operator()(std::string_view name, const Element& value) {
     append(name, ArrayElement<Element>::layout, sizeof(Element), &value, 1);
   }
-  /// The finished checkpoint.
+  /// Returns the finished checkpoint.
   std::vector<std::uint8_t> finish() &&;
 
  private:
@@ -53,16 +54,17 @@ class CheckpointWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Gives arrays back by their names; the bytes must outlive it.
+/// Reads arrays by their names; the bytes must outlive it.
 class CheckpointReader {
  public:
-  /// Errors: those of read_checkpoint_header; input, if the arrays are damaged.
+  /// Errors: as read_checkpoint_header; input, if the arrays are damaged.
   explicit CheckpointReader(std::span<const std::uint8_t> bytes);
 
   const CheckpointHeader& header() const { return header_; }
 
-  /// Fills `array` with what was written under `name`; leaves it as it is if nothing was. Errors: input, if
-  /// elements of another layout were written, or not one value where one is wanted.
+  /// Fills `array` with the elements written under `name`; leaves it unchanged if there are none. Errors:
+  /// input, if the elements have another layout, or if a single value is read and not exactly one was
+  /// written.
   template <class Element>
   void operator()(std::string_view name, std::vector<Element>& array) {
     const Record* record = find(name, ArrayElement<Element>::layout, sizeof(Element));
@@ -77,8 +79,8 @@ class CheckpointReader {
     require_one(name, *record);
     copy(*record, &value);
   }
-  /// Throws Error(input) if there are arrays that nobody asked for: what a later muslin remembers, without
-  /// which the run would go on otherwise.
+  /// Throws Error(input) if there are arrays that were never read: state of a later version of muslin,
+  /// without which the run would continue differently.
   void finish() const;
 
  private:

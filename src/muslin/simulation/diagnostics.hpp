@@ -1,4 +1,4 @@
-// A row of numbers for each frame of a run, and the time that its parts took.
+// Diagnostics is a row of numbers for each frame of a run; RunCosts is the time that its parts took.
 #pragma once
 
 #include <cstdint>
@@ -12,38 +12,38 @@
 
 namespace muslin {
 
-/// One row of diagnostics.csv. Energies in joule, momentum in kg·m/s, over all bodies. The balance
-/// kinetic + elastic + potential − work + dissipated stays what it was at frame 0, up to the solver's
-/// residual (docs/theory/energy-balance.md).
+/// One row of diagnostics.csv. Energies in joule, momentum in kg·m/s, over all bodies. The balance kinetic +
+/// elastic + potential − work + dissipated keeps its value of frame 0, up to the solver's residual
+/// (docs/theory/energy-balance.md).
 struct Diagnostics {
   int frame = 0;
   double time = 0;
   double kinetic = 0, elastic = 0, potential = 0;
-  double work = 0;        ///< done from outside since the start (forces, wind, moving pins)
-  double dissipated = 0;  ///< lost since the start: damping and the integrator's own
+  double work = 0;        ///< external work since the start (forces, wind, moving pins)
+  double dissipated = 0;  ///< lost since the start, by damping and by the integrator
   Vec3 momentum = Vec3::Zero();
   int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
   double residual = 0;                               ///< largest of this frame [m/s²]
   double max_stretch = 1;  ///< largest length / rest length of a spring, or of a shell in any direction
-  /// Work of what is out of balance at free vertices since the start: the steps' residual forces times
-  /// displacements [J]. By that much balance() has changed.
+  /// Work of the residual forces at free vertices since the start [J]: the sum over the steps of residual
+  /// force times displacement. balance() has changed by this amount.
   double unbalanced = 0;
-  /// Smallest gap between surfaces, thickness taken off, at the ends of all steps of the frame [m]; infinity
-  /// where it is more than the contact distance, or nothing can touch. Not above 0 only while something is
-  /// still as it was in a start that was allowed to be tangled: where triangles cross, at distance 0, it is
-  /// −thickness, in a ball or beneath a plane minus the depth.
+  /// Smallest gap between surfaces, thickness subtracted, at the ends of all steps of the frame [m]; infinity
+  /// if it exceeds the contact distance or nothing can touch. It is 0 or less only while surfaces of a
+  /// tangled start still cross: −thickness where triangles cross (distance 0), minus the depth inside a ball
+  /// or beneath a plane.
   double min_distance = 0;
-  int held_back = 0;   ///< vertices moved along keyframes that something in their way holds back
+  int held_back = 0;        ///< vertices moved along keyframes that an obstacle holds back
   int steps = 0;            ///< of this frame
-  int converged_steps = 0;  ///< of these, how many ended within their tolerance
-  double error = 0;         ///< largest estimate of what a step of this frame left unsolved, as motion [m]
-  int crossings = 0;        ///< pairs of triangles that cross, in a start that was allowed to be tangled
-  double penetration = 0;   ///< how deep the deepest of these, or what is inside a collider, is [m]
+  int converged_steps = 0;  ///< number of them that ended within tolerance
+  double error = 0;         ///< largest estimated error of a step of this frame, as a displacement [m]
+  int crossings = 0;        ///< pairs of triangles that still cross after a tangled start
+  double penetration = 0;   ///< largest depth of a crossing or inside a collider [m]
   double wall_ms = 0;  ///< time this frame took
 
   double balance() const { return kinetic + elastic + potential - work + dissipated; }
 
-  /// All but wall_ms, which no two runs share.
+  /// Names all members except wall_ms, which differs between runs.
   template <class Self, class Arrays>
   static void name_arrays(Self& self, Arrays& arrays) {
     arrays("diagnostics.frame", self.frame);
@@ -69,7 +69,7 @@ struct Diagnostics {
   }
 };
 
-/// Counted in the frame in work so far.
+/// Counts of the current frame so far.
 struct FrameCounts {
   std::int64_t newton = 0, linear = 0;                            ///< iterations
   double residual = 0;                                            ///< the largest [m/s²]
@@ -91,7 +91,7 @@ struct FrameCounts {
   }
 };
 
-/// Time that the parts of a run have taken since it was made.
+/// Time that the parts of a run have taken since its construction.
 struct RunCosts {
   double search = 0, limit = 0, contact = 0;  ///< finding candidates, limiting steps, contact potentials [s]
   double linearize = 0, solve = 0;            ///< Hessians and their factors, linear systems [s]
@@ -99,8 +99,8 @@ struct RunCosts {
   std::int64_t deflected = 0, shortened = 0;  ///< vertices, summed over limits
 };
 
-/// The largest ratio of length and rest length in all bodies at x (#V by 3 [m]): of a spring, or of a shell
-/// in any direction. 1 without bodies.
+/// Returns the largest ratio of length to rest length over all bodies at x (#V by 3 [m]): of a spring, or of
+/// a shell in any direction; 1 without bodies.
 MUSLIN_API double max_stretch(const Model& model, ConstVectors x);
 
 /// The stretch of a shell that has a `stretch_limit`, at the end of a frame.
@@ -111,7 +111,7 @@ struct LimitedStretch {
   std::string body;
 };
 
-/// One for each shell with a limit, at x (#V by 3 [m]); `frame` is written into each.
+/// Returns the stretch of each shell with a limit, at x (#V by 3 [m]); `frame` is stored in each.
 MUSLIN_API std::vector<LimitedStretch> limited_stretches(const Model& model, ConstVectors x, int frame);
 
 }  // namespace muslin

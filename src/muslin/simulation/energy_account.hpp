@@ -1,5 +1,6 @@
-// Where the energy of a step went: stored, supplied from outside, or lost. docs/theory/energy-balance.md
-// derives the sums; every one follows from the integrator's discrete equation of motion
+// energy_flow computes the energy that a step stored, received from outside, or lost.
+// docs/theory/energy-balance.md derives the sums; each follows from the integrator's discrete equation of
+// motion
 //
 //   M (x₁ − x̃)/dt² + Σᵢ gᵢ = R,     R zero at free vertices and the reaction at held ones,
 //
@@ -20,11 +21,11 @@ namespace muslin {
 
 inline bool is_stored(EnergyRole role) { return role == EnergyRole::elastic || role == EnergyRole::potential; }
 
-/// A potential of the step, with its place in the balance.
+/// A potential of the step, with its role in the balance.
 struct ActingPotential {
   EnergyRole role = EnergyRole::elastic;
   const Potential* potential = nullptr;
-  /// Energy stored at the beginning of the step, 0 of roles that store none [J].
+  /// Energy stored at the beginning of the step [J]; 0 for roles that store none.
   double before = 0;
   /// Energy stored at the end, if it differs from the value of the potential: contact lags some parts,
   /// plastic work is lost [J].
@@ -40,15 +41,15 @@ struct SolvedStep {
   const State* after = nullptr;           ///< at its end
   std::span<const double> masses;         ///< #V [kg]
   std::span<const std::uint8_t> fixed;    ///< #V, 1 where held
-  std::span<const ActingPotential> acts;  ///< what acted
+  std::span<const ActingPotential> acts;  ///< the potentials that acted
 };
 
-/// Energies [J] that crossed the border of the system during a step.
+/// Energies [J] that entered or left the system during a step.
 struct EnergyFlow {
   double work = 0;        ///< done by loads and by held vertices that moved
-  double dissipated = 0;  ///< taken by damping and by the integrator (which may also give: then < 0)
+  double dissipated = 0;  ///< by damping and by the integrator; < 0 if the integrator adds energy
   double unbalanced = 0;  ///< work of the forces at free vertices that the solver left out of balance
-  std::vector<double> stored;  ///< by each of the acts at the end; 0 of roles that store nothing
+  std::vector<double> stored;  ///< by each of `acts` at the end; 0 for roles that store none
 };
 
 /// Returns the flow of one step.

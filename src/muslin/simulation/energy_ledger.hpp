@@ -1,4 +1,5 @@
-// The energy of a run so far: what is stored where, and what came and went since the start.
+// EnergyLedger is the energy account of a run: the energy stored by each term, and the work and losses since
+// the start.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +17,7 @@
 
 namespace muslin {
 
-/// All that acts in a run: the potentials of its model, then its loads, those that were added last. Slots
+/// All terms of a run: the potentials of its model, then the loads of its model, then added loads. Slots
 /// number them in this order.
 struct Terms {
   std::span<const PotentialTerm> potentials;
@@ -26,9 +27,9 @@ struct Terms {
   EnergyRole role(std::size_t slot) const {
     return slot < potentials.size() ? potentials[slot].role : loads[slot - potentials.size()].role;
   }
-  /// The potential of each load in a step; null where it does not act.
+  /// Returns the potential of each load in a step; null where it does not act.
   std::vector<std::unique_ptr<Potential>> potentials_of_loads(const StepContext& context) const;
-  /// Hashes of the names, #slots.
+  /// Returns hashes of the names, #slots.
   std::vector<std::uint64_t> keys() const;
 };
 
@@ -37,8 +38,8 @@ struct EnergyLedger {
   double work = 0, dissipated = 0;   ///< since the start [J]
   double unbalanced = 0;             ///< since the start [J]
   double contact_energy = 0;         ///< [J]
-  std::vector<std::uint64_t> terms;  ///< which `stored` is about, by Terms::keys
-  std::vector<double> stored;        ///< of each of these, 0 where its role is not to store [J]
+  std::vector<std::uint64_t> terms;  ///< the terms of `stored`, by Terms::keys
+  std::vector<double> stored;        ///< energy of each, 0 for roles that store none [J]
 
   template <class Self, class Arrays>
   static void name_arrays(Self& self, Arrays& arrays) {
@@ -50,19 +51,19 @@ struct EnergyLedger {
     arrays("energy.stored", self.stored);
   }
 
-  /// The energy that all terms of one role store, without contact [J].
+  /// Returns the energy that all terms of one role store, without contact [J].
   double sum(const Terms& acting, EnergyRole role) const;
 
-  /// Takes down what is stored at `positions`, fields as they are in the step that `context` begins.
+  /// Records the energy stored at `positions`, with fields as in the step of `context`.
   void measure(const Terms& acting, const StepContext& context, ConstVectors positions);
 
-  /// Enters a step; `step.acts` are filled in here. `loads`: what the loads amounted to in it. `contact`:
+  /// Adds a step; `step.acts` is filled in here. `loads`: the potentials of the loads in the step. `contact`:
   /// the potential of contact, null if nothing can touch.
   void enter(const Terms& acting, SolvedStep step, std::span<const std::unique_ptr<Potential>> loads,
              const ContactPotential* contact);
 
-  /// Goes on with other terms than the ledger was kept for, from `positions`: the energy of terms with the
-  /// same name stays, what has changed between counts as work.
+  /// Continues with other terms, from `positions`: the energy of terms with the same name is kept; the change
+  /// of energy counts as work.
   void go_on_with(const Terms& acting, ConstVectors positions);
 };
 

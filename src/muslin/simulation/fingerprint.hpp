@@ -1,4 +1,4 @@
-// Tells whether a saved state belongs to a model.
+// Computes the fingerprint by which a saved state is matched to a model.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,9 @@
 
 namespace muslin {
 
-/// Hash of what a state must fit: the vertices at rest, their masses, and the bodies' lattices and
-/// materials. Pins, loads, times and solver settings are not in it: a run may go on with others.
+/// Returns a hash of the data that a state must fit: the vertices at rest, their masses, and the bodies'
+/// lattices and materials. Pins, loads, times and solver settings are not included: a run may continue with
+/// others.
 std::uint64_t model_fingerprint(const Model& model);
 
 }  // namespace muslin

@@ -1,4 +1,4 @@
-// The connected parts of a model: what springs, triangles or a rigid frame hold together.
+// ModelParts lists the connected parts of a model: vertices joined by springs, triangles or a rigid frame.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,14 @@ namespace muslin {
 struct ModelParts {
   std::vector<int> of_vertex;  ///< #V
   std::vector<double> edges;   ///< by part, typical distance of neighbouring vertices [m]
-  std::vector<double> sizes;   ///< by part, diagonal of its bounds at the start, of rigid ones that of the largest [m]
-  std::vector<double> longest_steps;  ///< by part, beyond which single precision loses its masses [s]
+  /// By part, diagonal of its bounds at the start; of rigid parts, that of the largest [m].
+  std::vector<double> sizes;
+  std::vector<double> longest_steps;  ///< by part, for which single precision resolves its masses [s]
 
   std::size_t count() const { return edges.size(); }
 };
 
-/// Vertices of no component are one part.
+/// Finds the parts. Vertices of no component form one part.
 ModelParts find_parts(const Model& model);
 
 }  // namespace muslin

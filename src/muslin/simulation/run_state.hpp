@@ -1,5 +1,5 @@
-// All of a run that changes, as one value. A step that fails is undone by a copy made before it, a checkpoint
-// holds all of it, and what is not in it is scratch.
+// RunState is the complete mutable state of a run, as one value. A step that fails is undone by restoring a
+// copy, and a checkpoint stores all of it. Data outside it is scratch.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace muslin {
 
-/// Identifies a pin across runs: its anchors make sense only for the same vertices, caught at the same time.
+/// Identifies a pin across runs: its anchors are valid only for the same vertices and the same start time.
 struct PinKey {
   std::uint64_t hash = 0;
   std::uint64_t vertices = 0;
@@ -32,12 +32,12 @@ struct ArrayElement<PinKey> {
   static constexpr std::string_view layout = "u64x2";
 };
 
-/// Something new that changes is a member here, or of one of these structs, and a line in its name_arrays.
+/// New mutable state becomes a member here or of one of these structs, with a line in its name_arrays.
 struct RunState {
   State motion;
   int frame = 0;             ///< the last finished frame
-  int steps_done = 0;        ///< steps of the frame in work
-  std::vector<PinKey> pins;  ///< which `holds` is about
+  int steps_done = 0;        ///< steps of the current frame
+  std::vector<PinKey> pins;  ///< the pins of `holds`
   Holds holds;
   ContactMemory contact;  ///< empty if nothing can touch
   EnergyLedger energy;
@@ -61,12 +61,12 @@ struct RunState {
 };
 
 std::vector<std::uint8_t> to_checkpoint(const CheckpointHeader& header, const RunState& state);
-/// An array that the checkpoint does not hold is as in a RunState newly made. Errors: input, if the bytes are
-/// no whole checkpoint, hold what is not known, or are of another number of vertices.
+/// Arrays that the checkpoint lacks keep the values of a new RunState. Errors: input, if the bytes are not a
+/// complete checkpoint, contain unknown arrays, or belong to another number of vertices.
 RunState from_checkpoint(std::span<const std::uint8_t> bytes, std::size_t vertices);
 
-/// Goes on with other pins: every pin that was there keeps its anchors; a new one takes hold in its first
-/// step.
+/// Continues with other pins: pins that were there before keep their anchors; a new pin takes hold in its
+/// first step.
 void go_on_with(std::span<const Pin> pins, RunState& state);
 
 }  // namespace muslin

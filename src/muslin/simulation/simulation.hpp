@@ -1,4 +1,4 @@
-// The façade of a run: a model and its state, advanced frame by frame.
+// Simulation is the façade of a run: a model and its state, advanced frame by frame.
 #pragma once
 
 #include <array>
@@ -20,74 +20,77 @@
 namespace muslin {
 
 struct SimulationOptions {
-  /// Start although surfaces cross: these are left free of each other until they part.
+  /// Start although surfaces cross; crossing triangles are not in contact until they part.
   bool allow_tangled = false;
 };
 
 class MUSLIN_API Simulation {
  public:
-  /// Errors: input, if surfaces cross at the start and may not; usage, if symplectic_euler meets contact.
+  /// Errors: input, if surfaces cross at the start and that is not allowed; usage, if the model has contact
+  /// and the integrator is symplectic_euler.
   explicit Simulation(std::shared_ptr<const Model> model, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
   const Model& model() const;
-  std::shared_ptr<const Model> shared_model() const;  ///< the same; changes with cut and change_model
+  std::shared_ptr<const Model> shared_model() const;  ///< replaced by cut and change_model
   const SimulationOptions& options() const;
-  const State& state() const;              ///< how all bodies are and move
+  const State& state() const;              ///< positions and velocities of all bodies
   int frame() const;                       ///< the last finished frame
-  int steps_done() const;                  ///< steps of the frame in work; 0 unless it was interrupted
+  int steps_done() const;                  ///< steps of the current frame; 0 unless it was interrupted
   const Diagnostics& diagnostics() const;  ///< of the last finished frame
-  std::size_t tangled() const;             ///< pairs of triangles that cross still, where that is allowed
+  std::size_t tangled() const;             ///< pairs of triangles that still cross after a tangled start
   RunCosts costs() const;
   /// Returns the body or collider of that name. Errors: usage, with the nearest name.
   SimulatedBody body(const std::string& name);
-  /// Returns where the probe of that name is [m]. Errors: usage, with the nearest name.
+  /// Returns the position of the probe of that name [m]. Errors: usage, with the nearest name.
   Vec3 probe(const std::string& name) const;
 
   /// Advances to the end of the next frame. A step that fails is halved, up to 8 times; if that fails too,
-  /// throws Error(solver) with frame, time, place and what to change, and the state is that of the last good
-  /// step. Polls progress.cancelled before each step; after Error(interrupted), or whatever else a load or a
-  /// callback throws, the next call goes on from the last whole step.
+  /// throws Error(solver) with frame, time, place and remedy, and the state is that of the last good step.
+  /// Polls progress.cancelled before each step. After Error(interrupted), or an exception from a load or a
+  /// callback, the next call continues from the last completed step.
   void advance(const Progress& progress = {});
-  /// One step of that, which finishes the frame if it is the frame's last.
+  /// Advances one step and finishes the frame if this is its last step.
   void step();
 
-  /// Loads besides those of the model, in the energy balance by their role. They may depend on what changes
-  /// outside, so they are no part of checkpoints: add them again before restore(). Errors: usage, if it is
-  /// null.
+  /// Adds a load besides those of the model; its role places it in the energy balance. Added loads are not
+  /// part of checkpoints, because they may depend on external data: add them again before restore(). Errors:
+  /// usage, if it is null.
   void add_load(LoadTerm load);
 
-  /// Puts all vertices (#V by 3 [m]) somewhere else, as one would by hand: velocities stay, BDF2 starts anew,
-  /// pins that hold take hold where their vertices are now and move on from there, and the change of energy
-  /// counts as work. Colliders that move as they are told stay. Contact forgets what stuck. Errors: usage,
-  /// for another count or for numbers that are not finite or beyond 1.5e11 m; input, if surfaces would cross.
+  /// Moves all vertices to `positions` (#V by 3 [m]), as if by hand: velocities are kept, BDF2 restarts,
+  /// active pins hold their vertices at the new positions and move them on from there, and the change of
+  /// energy counts as work. Prescribed colliders keep their scripted positions. Contact loses its friction
+  /// memory. Errors: usage, for another number of vertices, or coordinates that are not finite or beyond
+  /// 1.5e11 m; input, if surfaces would cross.
   void set_positions(ConstVectors positions);
-  /// The same for velocities (#V by 3 [m/s]). Errors: usage, for another count or numbers not finite.
+  /// Sets the velocities (#V by 3 [m/s]), likewise. Errors: usage, for another number of vertices or numbers
+  /// that are not finite.
   void set_velocities(ConstVectors velocities);
 
-  /// Opens edges of a shell, given by pairs of vertices of its mesh counted from 0, and goes on with what
-  /// became of it: cut() in muslin/topology says where vertices part and how new ones are numbered. Vertices
-  /// keep their motion, pins what they hold; the energy of hinges that are gone counts as work. Contact
-  /// forgets what stuck, and lets both sides of the cut pass until they have parted. Forces and energies that
-  /// a program added are dropped with what loads remember, and references to bodies and the model are no
-  /// longer valid. A checkpoint made from now on belongs to model(). Errors: usage, for a body that is no
-  /// shell or a pair that is no edge; input, where a pin or contact cannot go on.
+  /// Cuts a shell open along edges, given by pairs of vertices of its mesh counted from 0, and continues with
+  /// the changed shell. cut() in muslin/topology states where vertices are split and how new ones are
+  /// numbered. Vertices keep their motion and pins their vertices; the energy of removed hinges counts as
+  /// work. Contact loses its friction memory, and both sides of the cut do not touch until they have parted.
+  /// Forces and energies that a program added are dropped, as is the history of loads, and references to
+  /// bodies and the model become invalid. Later checkpoints belong to the new model(). Errors: usage, for a
+  /// body that is not a shell or a pair that is not an edge; input, if a pin or contact cannot continue.
   void cut(const std::string& body, std::span<const std::array<int, 2>> edges);
-  /// Goes on with any other model, whose vertex v continues vertex origins[v] of the model so far. The
-  /// change of energy counts as work. Errors: usage, for another number of origins or one out of range;
-  /// input, if surfaces would cross.
+  /// Continues with another model, whose vertex v takes over the motion of vertex origins[v] of the current
+  /// model. The change of energy counts as work. Errors: usage, if the number of origins is wrong or one is
+  /// out of range; input, if surfaces would cross.
   void change_model(std::shared_ptr<const Model> model, std::span<const int> origins);
 
-  /// The complete state as bytes, and back: a run continued from it gives the same bits as one that never
-  /// stopped. Only the bodies must be the same; pins, loads, duration and solver settings may have changed
-  /// (pins that are new take hold of their vertices where they are). restore throws Error(input) if the
-  /// bytes are damaged, of other bodies, or inside a frame that now has another number of steps.
+  /// Save the complete state as bytes and restore it: a run continued from a checkpoint gives the same bits
+  /// as one that never stopped. Only the bodies must be the same; pins, loads, duration and solver settings
+  /// may have changed (new pins hold their vertices where they are). restore throws Error(input) if the bytes
+  /// are damaged, belong to other bodies, or were saved inside a frame that now has another number of steps.
   std::vector<std::uint8_t> checkpoint() const;
   void restore(const std::vector<std::uint8_t>& bytes);
 
-  /// Drops every workspace: the next step makes them again. Results do not change.
+  /// Drops all workspaces; the next step rebuilds them. Results do not change.
   void forget_scratch();
 
  private:

@@ -1,4 +1,4 @@
-// The inside of a Simulation: a model, a state, and what drives the one with the other. For simulation/*.cpp.
+// Simulation::Impl holds the model, the state and the workspaces of a simulation. For simulation/*.cpp.
 #pragma once
 
 #include <memory>
@@ -14,27 +14,27 @@ namespace muslin {
 struct Simulation::Impl {
   std::shared_ptr<const Model> model;
   SimulationOptions options;
-  std::vector<LoadTerm> loads;  ///< those of the model, then those that were added
+  std::vector<LoadTerm> loads;  ///< those of the model, then added ones
   RunState state;
   Scratch scratch;
-  double wall_ms = 0;  ///< spent on the frame in work
+  double wall_ms = 0;  ///< spent on the current frame
 
   Impl(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options);
 
   const TimeSettings& time() const { return model->scene.time; }
   Terms terms() const { return {model->potentials, loads}; }
   void advance();
-  double progress() const;  ///< of the frame in work, 0 … 1
-  /// Throws what is wrong with positions at which contact is to begin.
+  double progress() const;  ///< of the current frame, 0 … 1
+  /// Throws Error(input) if surfaces cross at `positions`, where contact is to begin.
   void require_untangled(const std::vector<Vec3>& positions) const;
-  /// Begins contact without a past, at positions where nothing crosses that may not. With `leave_free` what
-  /// crosses there is left free until it parts.
+  /// Restarts contact, without memory, at positions where only allowed crossings exist. With `leave_free`,
+  /// triangles that cross there are not in contact until they part.
   void touch(bool leave_free);
   void measure_energy();
   void describe_state(Diagnostics& row) const;
-  /// By hand; for what was put there is no step before.
+  /// Replaces positions and velocities as if by hand: the integrator has no previous step.
   void put(State changed);
-  /// Vertices that move as they are told do not move otherwise.
+  /// Copies prescribed vertices from `from` to `to`: they keep their scripted positions.
   void keep_prescribed(ConstVectors from, Vectors to) const;
 
  private:

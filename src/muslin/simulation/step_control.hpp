@@ -1,12 +1,11 @@
-// The length of steps that the program chooses: frames halved as often as the motion needs.
+// StepControl chooses the length of adaptive steps: a frame is halved as often as the motion requires.
 //
-// A step of length dt moves a part by ½ a dt² beyond what its velocity says, a the acceleration of the last
-// step (root mean square over its masses). That is kept to a small share of its size, so that the damping of
-// the integrator stays small at every resolution alike; what rests takes one step a frame, as far as single
-// precision still tells masses from stiffnesses. Two parts that meet go no more than a few edges past each
-// other in a step. Where a step took many iterations or missed its tolerance the next ones are shorter, and
-// longer again once they are easy.
-// docs/theory/solver.md.
+// A step of length dt moves a part by ½ a dt² beyond a straight motion, with a the acceleration of the last
+// step (root mean square over its masses). This displacement is limited to a small share of the part's size,
+// so that the damping of the integrator is equally small at every resolution. A body at rest takes one step
+// per frame, as long as single precision resolves masses against stiffnesses. Two parts that meet slide past
+// each other by at most a few edges in a step. If a step took many iterations or missed its tolerance, the
+// next steps are shorter, and longer again once they converge easily. docs/theory/solver.md.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +17,12 @@
 
 namespace muslin {
 
-/// Part of the state of a run: where it is in a frame, and how hard the last steps were.
+/// Part of the state of a run: the position within a frame, and how hard the last steps were.
 struct StepControl {
-  static constexpr int deepest = 12;                           ///< a frame is halved no more often
+  static constexpr int deepest = 12;                                 ///< a frame is halved at most this often
   static constexpr std::int64_t frame = std::int64_t{1} << deepest;  ///< in ticks
-  std::int64_t ticks = 0;  ///< of the frame in work that are done
-  int level = 0;           ///< of the last step: a frame halved so often
+  std::int64_t ticks = 0;                                            ///< done, of the current frame
+  int level = 0;           ///< of the last step: how often the frame is halved
   int harder = 0;          ///< levels added because steps were hard
 
   template <class Self, class Arrays>
@@ -33,11 +32,12 @@ struct StepControl {
     arrays("steps.harder", self.harder);
   }
 
-  /// The level that the motion asks for, steps of which fit from here. `accelerations`: by part, of loads.
+  /// Returns the level that the motion requires, such that its steps fit into the rest of the frame.
+  /// `accelerations`: by part, of loads [m/s²].
   int choose(const ModelParts& parts, std::span<const double> accelerations, std::span<const double> masses,
              const State& state, double frame_time, Effort effort) const;
   static std::int64_t length(int level) { return frame >> level; }  ///< in ticks
-  /// A step of `chosen` was made.
+  /// Records a step of level `chosen`.
   void note(int chosen, const StepReport& report);
 };
 

@@ -1,4 +1,4 @@
-// BackgroundGrid interpolates values at the nodes of a coarse grid trilinearly at scattered points.
+// BackgroundGrid interpolates values trilinearly from the nodes of a coarse grid to scattered points.
 //
 // Points belong to components, which share no nodes. The axes along which a component is thinner than half a
 // cell have a single node; along the others every occupied cell has two.
@@ -25,7 +25,8 @@ class BackgroundGrid {
     std::array<int, 3> index{};  ///< along the axes with two nodes
     std::array<int, 8> lower{};  ///< neighbour lower along the axes of the index' bits; −1: none
   };
-  /// cell −1: the point is excluded. `t` by axis with two nodes, in units of 1/32768.
+  /// cell −1 marks an excluded point. `t` is the position in the cell along each axis with two nodes, in
+  /// units of 1/32768.
   struct Point {
     int cell = -1;
     std::array<std::uint16_t, 3> t{};
@@ -56,7 +57,7 @@ class BackgroundGrid {
     return cell;
   }
 
-  /// Expresses both points in one cell and returns true, if they lie in or on the border of a common one.
+  /// If both points lie in or on the border of a common cell, expresses them in that cell and returns true.
   bool meet(Point& a, Point& b) const;
 
   std::size_t bytes() const {
@@ -73,8 +74,8 @@ class BackgroundGrid {
   std::vector<int> node_components_;
 };
 
-/// GridMatrix stores the blocks of a matrix between the nodes of a grid and their places. Adding half of a
-/// symmetric matrix is enough: `finish` adds its transpose.
+/// GridMatrix stores the blocks of a matrix between the nodes of a grid and their places. Only half of a
+/// symmetric matrix need be added: `finish` adds its transpose.
 class GridMatrix {
  public:
   GridMatrix() = default;
@@ -111,7 +112,7 @@ struct Block3 {
 /// half += Σ w B of nodes k ≤ l of a cell; w by k and l in the order (0,0), (0,1), …, (1,1), …
 void add_weighted(const BackgroundGrid& grid, const GridMatrix& matrix, int cell, const float* w,
                   const Block3& block, Float4* half);
-/// half += Pᵀ B P of one block at a point, of one between two points, of a coupling.
+/// half += Pᵀ B P for a block at a point, a block between two points, or a coupling.
 void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& at,
                const Block3& block, Float4* half);
 void add_block(const BackgroundGrid& grid, const GridMatrix& matrix, const BackgroundGrid::Point& row,

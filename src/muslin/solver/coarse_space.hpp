@@ -6,8 +6,8 @@
 // H⁺ the Hessian without the negative t of its couplings, Z trilinear with a spacing of eight edges (of four
 // where block matrices couple the vertices). Couplings of one direction within one cell are summed first and
 // get the mean of their weights: Σ δᵢδᵢᵀ ⊗ Bᵢ ≈ (Σ δᵢδᵢᵀ) ⊗ (Σ Bᵢ) / n, exact where they are equal and
-// positive semidefinite always. Bodies are the components of coupled vertices; small ones are excluded. From
-// potentials that are neither couplings nor block matrices H⁺ has the diagonal blocks.
+// positive semidefinite always. Bodies are the components of coupled vertices; small ones are excluded.
+// Potentials that are neither couplings nor block matrices contribute their diagonal blocks to H⁺.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ namespace muslin {
 
 class CoarseSpace {
  public:
-  /// For linearisations with the patterns of this one; `rest_positions` #V by 3 [m].
+  /// For linearisations with the same patterns as `h`; `rest_positions` #V by 3 [m].
   CoarseSpace(const Linearization& h, ConstVectors rest_positions);
   bool fits(const Linearization& h, ConstVectors rest_positions) const;
   /// True if there is nothing to correct.
@@ -28,8 +28,8 @@ class CoarseSpace {
 
   /// Computes Zᵀ H⁺ Z.
   void assemble(const Linearization& h);
-  /// t = Z B Zᵀ r, zero on held vertices; returns rᵀt. Both by position in the elimination order, the sets of
-  /// couplings one after the other; r in groups of 16 x, 16 y and 16 z.
+  /// t = Z B Zᵀ r, zero on held vertices; returns rᵀt. Both are indexed by position in the elimination order,
+  /// one set of couplings after the other; r in groups of 16 x, 16 y and 16 z.
   double correct(const float* r, Floats t);
 
   std::size_t bytes() const;
@@ -55,8 +55,8 @@ class CoarseSpace {
   BackgroundGrid::Point point(std::size_t position) const {
     return held_[position] != 0 ? BackgroundGrid::Point{} : grid_.point(position);
   }
-  /// Couplings of one kind in one cell: the sum over them of δ_k δ_l (k ≤ l, as add_weighted has them),
-  /// divided by their number. The masses of a cell's vertices likewise.
+  /// For the couplings of one kind in one cell: the mean of δ_k δ_l (k ≤ l, in the order of add_weighted).
+  /// The same for the masses of a cell's vertices.
   using Square = std::array<float, 36>;  // for nodes k ≤ l of a cell, as add_weighted has them
   struct Bundle {
     int cell = 0;

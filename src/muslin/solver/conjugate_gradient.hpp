@@ -27,8 +27,8 @@ struct LinearReport {
   double relative_residual = 1;
 };
 
-/// Solves H s = b for the Hessian H at x. `residual` receives b − H s from the recurrence. If the very first
-/// direction has negative curvature, s = P⁻¹ b: steepest descent in the preconditioner's metric.
+/// Solves H s = b for the Hessian H at x. `residual` receives b − H s from the recurrence. If the first
+/// direction has negative curvature, s = P⁻¹ b, which is steepest descent in the preconditioner's metric.
 LinearReport conjugate_gradient(const IncrementalPotential& function, ConstVectors x,
                                 const Preconditioner& preconditioner, ConstVectors b,
                                 const LinearSettings& settings, Vectors s, Vectors residual);

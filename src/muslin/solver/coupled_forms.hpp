@@ -1,5 +1,5 @@
-// CoupledForms are the terms factor · Σ c_ef gₑ g_fᵀ of a FormCoupling in a linear system, multiplied factor
-// by factor: all gₑ·p, the coefficients, and back to the vertices.
+// CoupledForms are the terms factor · Σ c_ef gₑ g_fᵀ of a FormCoupling in a linear system, multiplied in
+// three passes: all gₑ·p, then the coefficients, then back to the vertices.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,12 @@ namespace muslin {
 
 class CoupledForms {
  public:
-  /// Begins anew for vertices first, first + 1, …; returns g, four a form, to be set.
+  /// Resets for vertices first, first + 1, …; returns g, four vectors per form, for the caller to set.
   Float4* reset(std::shared_ptr<const FormCoupling> coupling, std::size_t first, double factor);
 
   std::size_t first() const { return first_; }
-  /// y += C p on the body's vertices, three floats and a zero each, starting at the body; returns pᵀC p.
+  /// y += C p on the body's vertices, three floats and a zero per vertex; p and y begin at the body's first
+  /// vertex. Returns pᵀC p.
   double add_product(const Float4* p, Float4* y);
 
   std::size_t bytes() const { return gradients_.bytes() + along_.bytes() + moments_.bytes(); }

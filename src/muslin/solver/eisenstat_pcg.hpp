@@ -9,7 +9,7 @@
 //
 //   Ĥ = F⁻¹ H F⁻ᵀ,   Ĥ p = g + F⁻¹ ((A − D) t − u + K t),   t = F⁻ᵀ p,
 //
-// costs one sweep backwards (t, u = −Lᵀ t, g = Gᵀ t) and one forwards: hardly more than with H itself
+// costs one sweep backwards (t, u = −Lᵀ t, g = Gᵀ t) and one forwards, hardly more than a product with H
 // (Eisenstat 1981). docs/theory/eisenstat-pcg.md has the derivation. Held vertices have G⁻¹ = 0 and are
 // excluded.
 #pragma once
@@ -25,7 +25,8 @@
 
 namespace muslin {
 
-/// All calls refer to the Linearization of the last call of `factor`, which must not change until the next.
+/// All calls refer to the Linearization passed to the last `factor`, which must not change until the next
+/// `factor`.
 class EisenstatPcg {
  public:
   /// Returns the largest ‖A⁺_v‖ / (mass and drag of v) over free vertices.

@@ -9,8 +9,8 @@
 //
 // Positions number the vertices in this order, 16 for each group, some of them empty. In a lattice the
 // neighbours of the lanes of a group lie at consecutive positions, with few breaks: a block of couplings
-// needs two base positions and no index per coupling. The order depends on the pattern alone, hence the same
-// bits for any thread count.
+// needs two base positions and no index per coupling. The order depends on the pattern alone, so the bits are
+// the same for any thread count.
 #pragma once
 
 #include <array>

@@ -32,13 +32,14 @@ class IncrementalPotential {
 
   /// g = ∂E/∂x, zero on held vertices.
   void gradient(ConstVectors x, Vectors g) const;
-  /// Both in as few passes as the potentials allow; the same bits.
+  /// Computes both in as few passes as the potentials allow; the same bits.
   Value value_and_gradient(ConstVectors x, Vectors g) const;
-  /// y = ∂²E/∂x² p, zero on held vertices; p may move held vertices.
+  /// y = ∂²E/∂x² p, zero on held vertices; p need not be zero there.
   void hessian_product(ConstVectors x, ConstVectors p, Vectors y) const;
-  /// Positive definite diagonal blocks of (an approximation of) the Hessian; only mass on held vertices.
+  /// Sets positive definite diagonal blocks of (an approximation of) the Hessian; blocks of held vertices
+  /// contain only their mass.
   void diagonal_blocks(ConstVectors x, std::span<Mat3> blocks) const;
-  /// The Hessian at x, for the inner solver. x is kept by reference.
+  /// Adds up the Hessian at x for the inner solver. x is kept by reference.
   void linearize(ConstVectors x, Linearization& into) const;
   /// Returns the largest safe t along d over all potentials.
   double max_step(ConstVectors x, ConstVectors d) const;
@@ -49,7 +50,7 @@ class IncrementalPotential {
     double norm = 0;  ///< ‖g‖ over free vertices [kg m]
   };
   Imbalance imbalance(ConstVectors g) const;
-  /// Value, gradient and the gradient's imbalance in as few passes; the same bits.
+  /// Value, gradient and imbalance, computed in as few passes as the potentials allow; the same bits.
   struct Evaluation {
     Value value;
     Imbalance imbalance;

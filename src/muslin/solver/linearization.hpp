@@ -2,7 +2,8 @@
 //
 //   H = diag(identity) + couplings + K,   K = block matrices + the loose rest,
 //
-// the loose rest being relative stiffnesses, coupled forms, rank-one terms and general potentials.
+// where the loose rest consists of relative stiffnesses, coupled forms, rank-one terms and general
+// potentials.
 //
 // It is the HessianSink to which potentials add themselves (Potential::linearize): springs become couplings,
 // pair blocks matrices, contacts relative stiffness; what is added as a general potential is multiplied in
@@ -28,7 +29,7 @@ namespace muslin {
 
 class Linearization : public HessianSink {
  public:
-  /// Resets to H = M; potentials are added times `scale`.
+  /// Resets to H = M; potentials are multiplied by `scale`.
   void reset(std::span<const double> masses, std::span<const std::uint8_t> fixed, double scale);
 
   std::size_t size() const { return identity_.size(); }
@@ -76,7 +77,7 @@ class Linearization : public HessianSink {
 
   /// Returns the couplings of all vertices in ascending order, empty ones for vertices without any.
   std::span<const SpringHessian* const> sets() const { return sets_; }
-  /// Returns the block matrices, but those for which springs stand in.
+  /// Returns the block matrices except those for which springs stand in.
   std::span<const SymmetricMatrix* const> matrices() const { return matrices_; }
   bool has_springs() const;
   const float* identity() const { return identity_.data(); }
@@ -91,10 +92,10 @@ class Linearization : public HessianSink {
   /// stiffnesses are scaled down where masses would be lost to rounding.
   const FloatVectors& remainder_upper() const { return upper_; }
   const FloatVectors& remainder_lower() const { return lower_; }
-  /// Returns the largest trace of a diagonal block of relative stiffnesses over the vertex's part of the
-  /// identity.
+  /// Returns the largest ratio of the trace of a relative stiffness's diagonal block to the vertex's entry of
+  /// `identity`.
   double stiffest_relative() const { return stiffest_relative_; }
-  /// y += K p, #V by 3 and a zero each; returns pᵀK p.
+  /// y += K p, three floats and a zero per vertex; returns pᵀK p.
   double add_remainder_product(const Float4* p, Float4* y);
 
   std::size_t bytes() const;

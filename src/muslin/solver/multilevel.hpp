@@ -29,12 +29,12 @@ class Multilevel {
   Multilevel(std::shared_ptr<const BlockPattern> pattern, ConstVectors points,
              std::span<const int> components, std::vector<double> spacings);
 
-  /// The matrix to fill before `prepare`: symmetric and positive definite; of the pattern.
+  /// Returns the matrix, to be filled before `prepare`: symmetric, positive definite, with the pattern given.
   BlockMatrix& matrix() { return levels_[0].matrix; }
   /// Computes the coarser matrices.
   void prepare();
 
-  /// By node, to fill before `solve`, and its result; three floats and a zero each.
+  /// Return the right side, to be filled before `solve`, and the solution; three floats and a zero per node.
   std::vector<Float4>& right_side() { return levels_[0].b; }
   const std::vector<Float4>& solution() const { return levels_[0].x; }
   /// solution = B · right side, B ≈ the inverse of the matrix.

@@ -1,4 +1,5 @@
-// Truncated Newton with line search: the minimiser behind implicit Euler and BDF2, with and without contact.
+// minimize is a truncated Newton method with line search. It solves the steps of implicit Euler and BDF2,
+// with and without contact.
 #pragma once
 
 #include <vector>
@@ -11,41 +12,42 @@ namespace muslin {
 
 /// Vectors kept from step to step.
 struct NewtonWorkspace {
-  std::vector<Vec3> x;     ///< what the line search tries; between searches the preconditioned gradient
+  std::vector<Vec3> x;     ///< trial point of the line search; between searches the preconditioned gradient
   std::vector<Vec3> g, s;  ///< gradient and step
   std::vector<Vec3> base;  ///< the gradient without contact
-  std::vector<Vec3> d;     ///< what of the step is left
-  std::vector<Vec3> end;   ///< room for the result
+  std::vector<Vec3> d;     ///< the step as limited
+  std::vector<Vec3> end;   ///< the result
   PcgSolver pcg;
 
   std::size_t bytes() const;
 };
 
-/// Solves H s = b at the x that `pcg` was linearised at; in double where float cannot.
+/// Solves H s = b at the x where `pcg` was linearised; in double where float does not suffice.
 LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, ConstVectors b,
                           const LinearSettings& settings, PcgSolver& pcg, Vectors s);
 
-/// Moves x, where the step begins, to the minimum of `function` plus the guard's potential, in place; held
-/// vertices to their targets as far as the guard lets them. `function` is made of `problem` and lacks the
-/// guard's potential; `length` is that of the step [s].
+/// Minimises `function` plus the guard's potential, beginning at x, and stores the minimum in x. Held
+/// vertices move to their targets as far as the guard allows. `function` is built from `problem`, without the
+/// guard's potential; `length` is the length of the step [s].
 ///
-/// The start is where the motion of `state` goes on with the change of velocity of the last step, or the
-/// inertial prediction if that is lower, as far as the guard lets it. Each iteration solves H s = −g with the
-/// true Hessian by conjugate gradients, loosely at first (Eisenstat and Walker 1996) and up to the first
-/// negative curvature, has the guard limit the step and backtracks along what is left until the value has
-/// fallen enough (Armijo). Where values differ by less than their rounding, the slope decides instead (the
-/// approximate Wolfe condition of Hager and Zhang 2005). What contact lags is taken anew in each iteration.
+/// The initial guess continues the motion of `state` with the change of velocity of the last step, or is the
+/// inertial prediction if that has a lower value, as far as the guard allows. Each iteration solves H s = −g
+/// with the true Hessian by conjugate gradients, with a loose tolerance at first (Eisenstat and Walker 1996),
+/// and stops at negative curvature. The guard limits the step, and a line search backtracks along it until
+/// the value has decreased enough (Armijo). Where values differ by less than their rounding, the slope
+/// decides instead (the approximate Wolfe condition of Hager and Zhang 2005). The lagged quantities of
+/// contact are updated in each iteration.
 ///
-/// The error after an iteration is estimated as |s| ρ / (1 − ρ), ρ the factor by which the preconditioned
-/// norm of the gradient has fallen, plus what the guard and the line search have taken from s. A step is
-/// converged when that is within SolverSettings::error_tolerance in every part, and the work of what is left
-/// out of balance is a small share of what moves. docs/theory/solver.md.
+/// The error after an iteration is estimated as |s| ρ / (1 − ρ), with ρ the factor by which the
+/// preconditioned norm of the gradient has decreased, plus the part of s that the guard and the line search
+/// removed. A step has converged when this error is within SolverSettings::error_tolerance in every part and
+/// the work of the remaining imbalance is small relative to Σ m |Δx|² of the step. docs/theory/solver.md.
 StepReport minimize(const StepProblem& problem, const IncrementalPotential& function,
                     const SolverSettings& settings, const State& state, double length, Vectors x,
                     NewtonWorkspace& workspace);
 
-/// Puts held vertices exactly on their targets if nothing but rounding keeps them away; returns how many
-/// others there are.
+/// Sets held vertices exactly to their targets where only rounding separates them; returns the number of held
+/// vertices that are elsewhere.
 int snap_to_targets(const StepProblem& problem, Vectors x);
 
 }  // namespace muslin

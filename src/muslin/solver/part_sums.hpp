@@ -1,5 +1,5 @@
-// Sums over vertices, one for each part of a step (bodies, or groups of them), in parallel and with the same
-// bits for any thread count.
+// sum_by_part sums over the vertices of each part of a step (a body or a group of bodies), in parallel and
+// with the same bits for any thread count.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace muslin {
 
-/// Calls add(sums[part_of(v)], v) for v = 0 … count − 1 and returns the sums of `parts` parts. Sum{} is zero,
-/// and has an operator+=.
+/// Calls add(sums[part_of(v)], v) for v = 0 … count − 1 and returns the sums of `parts` parts. Sum{} must be
+/// zero, and Sum needs an operator+=.
 template <class Sum, class PartOf, class Add>
 std::vector<Sum> sum_by_part(std::size_t count, std::size_t parts, const PartOf& part_of, const Add& add) {
-  // Blocks are no smaller than what each of them has to add up.
+  // A block has at least four vertices per part, so that adding up the blocks costs little.
   const std::size_t grain = std::max<std::size_t>(2048, 4 * parts);
   std::vector<Sum> sums(parts);
   const std::size_t blocks = std::max<std::size_t>(1, (count + grain - 1) / grain);

@@ -1,6 +1,6 @@
 // PcgSolver solves the linear systems of a step in float: conjugate gradients on the linearised Hessian
-// between the halves of an incomplete factorisation, with a coarse grid where they converge slowly. Errors of
-// float are corrected by the caller's next iteration in double.
+// between the halves of an incomplete factorisation, with a coarse grid where they converge slowly. The
+// caller's next iteration, in double, corrects errors of float.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace muslin {
 
 class PcgSolver {
  public:
-  /// Begins a step; results do not depend on earlier steps.
+  /// Begins a step and drops what depends on earlier steps.
   void begin_step() {
     iterations_a_decade_ = 0;
     assembled_ = false;
@@ -23,17 +23,17 @@ class PcgSolver {
   /// Linearises at x, which must stay valid while `solve` is called.
   void linearize(const IncrementalPotential& function, ConstVectors x);
 
-  /// Returns the largest ‖diagonal block‖ / mass of a free vertex, without contact or of contact alone.
+  /// Returns the largest ‖diagonal block‖ / mass of a free vertex, of contact or of all other terms.
   double stiffest() const { return std::max(stiffest_, h_.stiffest_relative()); }
-  /// False if masses are lost beside stiffnesses in float: `solve` must not be used. Contact is capped in the
-  /// factors and does not count here.
+  /// Returns false if masses are lost to rounding against stiffnesses in float; then `solve` must not be
+  /// used. Contact is limited in the factors and does not count here.
   bool fits_float() const { return stiffest_ <= float_limit; }
 
   /// True if H has springs. Then it is the true Hessian and may be indefinite.
   bool has_springs() const { return h_.has_springs(); }
 
   /// Solves H s = b for the Hessian linearised last, as conjugate_gradient does. `norm` receives √(bᵀP⁻¹b).
-  /// Where the very first direction has negative curvature, H is replaced by its projection until the next
+  /// If the first direction has negative curvature, H is replaced by its projection until the next
   /// linearisation, unless NegativeCurvature::pass is set.
   LinearReport solve(ConstVectors b, const LinearSettings& settings, Vectors s, double& norm);
 
@@ -59,7 +59,7 @@ class PcgSolver {
   double stiffest_ = 0;  // of the factors
   bool projected_ = false;
   bool assembled_ = false;          // the coarse matrix, in this step
-  double iterations_a_decade_ = 0;  // that the residual fell by, without the coarse space, in this step
+  double iterations_a_decade_ = 0;  // per decade of the residual, without the coarse space, in this step
 };
 
 }  // namespace muslin

@@ -1,8 +1,9 @@
-// RelativeStiffness resists relative motion, in float: it adds contacts to the Hessian of the inner solver.
+// RelativeStiffness holds terms that resist relative motion, in float: the contacts in the Hessian of the
+// inner solver.
 //
 //   K = Σ Aᵀ (a n nᵀ + b (I − n nᵀ)) A,   A p = Σ wᵢ pᵢ
 //
-// over terms that change from one linearisation to the next and involve few of the vertices.
+// The terms change from one linearisation to the next and involve few of the vertices.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +19,17 @@ class RelativeStiffness {
  public:
   /// Resets to no terms, for vertices first … first + count − 1.
   void reset(std::size_t first, std::size_t count);
-  /// Makes room for `terms` terms with `weights` weights in all; each is to be set.
+  /// Allocates `terms` terms with `weights` weights in all, each for the caller to set.
   RelativeTerms resize(std::size_t terms, std::size_t weights);
   /// Call when all terms have been set.
   void finish();
 
   std::size_t first() const { return first_; }
-  /// y += K p, #V by 3 and a zero each, starting at the body; returns pᵀK p.
+  /// y += K p, three floats and a zero per vertex; p and y begin at the body's first vertex. Returns pᵀK p.
   double add_product(const Float4* p, Float4* y);
   /// Adds the diagonal blocks: xx, xy, xz, yy, yz, zz are the components of `upper` and `lower`. A block
-  /// whose trace is more than `most` times the vertex' `identity` is scaled down to that. Returns the largest
-  /// such ratio of a vertex that is not `fixed`.
+  /// whose trace is more than `most` times the vertex's `identity` is scaled down to that. Returns the
+  /// largest ratio of trace to `identity` of a vertex that is not `fixed`.
   double add_diagonal(const float* identity, const std::uint8_t* fixed, float most, Floats upper,
                       Floats lower) const;
 

@@ -5,8 +5,8 @@
 // potential: six equations for each group of touching bodies, solved by its six rigid motions, which change
 // no distance within it.
 //
-// Energy. The residual does the work gᵀ(x − x_n)/dt² in the step, which is spurious energy. It is zero if the
-// group moves slightly more or less far along its own motion: one equation, one unknown.
+// Energy. The residual does the work gᵀ(x − x_n)/dt² in the step, which is spurious energy. Moving the group
+// slightly farther or less far along its displacement makes this work zero: one equation, one unknown.
 // docs/theory/solver.md.
 #pragma once
 
@@ -20,8 +20,8 @@
 namespace muslin {
 
 /// Moves every group of parts without held vertices by the rigid motion that corrects its momenta. A group
-/// that touches static bodies is not rotated, and shifted only against its contacts' stiffness. g is the
-/// gradient at x.
+/// that touches static bodies is not rotated, and is translated only against its contacts' stiffness. g is
+/// the gradient at x.
 void correct_rigid_motions(const StepProblem& problem, const IncrementalPotential& function, StepGuard* guard,
                            ConstVectors g, Vectors x);
 

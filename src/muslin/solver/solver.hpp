@@ -34,9 +34,9 @@ enum class Effort {
 struct SolverSettings {
   Integrator integrator = Integrator::implicit_euler;
   Effort effort = Effort::normal;
-  /// A step has converged when its error estimate, as a displacement, is at most this share of the
-  /// displacement that the acting accelerations cause in a step: error ≤ tolerance · a · dt² in every part,
-  /// and at most that share of an edge. None: that of `effort`.
+  /// A step has converged when its error estimate, a displacement, is at most this share of the displacement
+  /// that the acting accelerations cause in a step (error ≤ tolerance · a · dt² in every part) and at most
+  /// this share of an edge. None: the tolerance of `effort`.
   std::optional<double> tolerance;
   double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
 
@@ -46,23 +46,23 @@ struct SolverSettings {
   }
 };
 
-/// One step's problem. `fixed[v]` is 1 where vertex v is held: it ends the step at targets[v], or as near as
-/// the guard allows.
+/// The problem of one step. `fixed[v]` is 1 where vertex v is held: it ends the step at targets[v], or as
+/// close as the guard allows.
 struct StepProblem {
   std::span<const double> masses;            ///< #V [kg]
   std::vector<const Potential*> potentials;  ///< all that act during this step
   std::span<const std::uint8_t> fixed;       ///< #V
   ConstVectors targets;                      ///< #V by 3 [m], read only where fixed
   StepGuard* guard = nullptr;                ///< limits all motions; null: none
-  /// #V by 3 [m], constant: vertices near each other here move alike. Without them the solver has no coarse
+  /// #V by 3 [m], constant: vertices that are close here move alike. Without them the solver has no coarse
   /// space for the smooth part of the motion.
   ConstVectors rest_positions = {};
-  /// #V, the connected part of the model of each vertex; empty: a single part.
+  /// #V, the connected part of the model that each vertex belongs to; empty: a single part.
   std::span<const int> parts = {};
-  std::span<const double> accelerations = {};  ///< by part, root mean square due to loads [m/s²]
+  std::span<const double> accelerations = {};  ///< by part, root mean square, due to loads [m/s²]
   std::span<const double> edges = {};          ///< by part, typical distance of neighbours [m]
-  /// True: linear systems in which float loses the masses beside the stiffnesses are solved in double, slowly.
-  /// False: a step that meets such a system ends there, not converged; shorter steps may fit float.
+  /// True: linear systems in which float loses the masses against the stiffnesses are solved in double,
+  /// slowly. False: a step with such a system ends without convergence; shorter steps may fit float.
   bool in_double = true;
 };
 
@@ -73,9 +73,9 @@ struct StepReport {
   double residual = 0;                              ///< max ‖∂E/∂xᵢ‖ / (mᵢ dt²) [m/s²]
   double error = 0;                                 ///< estimated distance from the minimum [m]
   int worst_vertex = -1;                            ///< where the residual is largest
-  int held_back = 0;                                ///< held vertices kept from their targets by a guard
-  double linearize_seconds = 0, solve_seconds = 0;  ///< spent under a guard on Hessians and linear systems
-  std::string failure;                              ///< why the step could not be made, empty otherwise
+  int held_back = 0;                                ///< held vertices that the guard keeps from their targets
+  double linearize_seconds = 0, solve_seconds = 0;  ///< on Hessians, on linear systems
+  std::string failure;                              ///< the reason if the step could not be made, else empty
 
   bool made() const { return failure.empty(); }
 };
@@ -91,9 +91,9 @@ class MUSLIN_API Stepper {
   Stepper(Stepper&&) noexcept;
   Stepper& operator=(Stepper&&) noexcept;
 
-  /// Advances `state` by one step. If the report says that it was not made, `state` is unchanged; it never
-  /// holds NaN. With a guard: symplectic_euler is refused (Error(usage)); the one iteration of
-  /// linearly_implicit_euler is limited by the guard.
+  /// Advances `state` by one step. If the report has a failure, `state` is unchanged; it never contains NaN.
+  /// With a guard: symplectic_euler is refused (Error(usage)); the one iteration of linearly_implicit_euler
+  /// is limited by the guard.
   StepReport step(const SolverSettings& settings, const StepContext& context, const StepProblem& problem,
                   State& state);
   /// Returns the memory held between steps.

@@ -2,9 +2,9 @@
 //
 //   B = q s sᵀ + t I,   ∂²W/∂x_a² ∋ B,  ∂²W/∂x_a∂x_b ∋ −B,
 //
-// as for every central force. s is three 16-bit integers, their unit √q common to a block of 16 couplings; t
-// is a float cut to its upper 16 bits. The errors, 3e-5 of the largest s of the block and 4e-3 of t, are far
-// below the tolerance of the inner solver.
+// as for every central force. s is stored as three 16-bit integers whose unit √q is common to a block of 16
+// couplings, t as a float truncated to its upper 16 bits. The errors, 3e-5 of the largest s of the block and
+// 4e-3 of t, are far below the tolerance of the inner solver.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ class SpringHessian {
  public:
   static constexpr int lanes = EliminationOrder::lanes;
 
-  /// The Hessian of a body whose vertices are first, first + 1, …; all zero.
+  /// Makes a zero Hessian of a body whose vertices are first, first + 1, ….
   SpringHessian(std::shared_ptr<const EliminationOrder> pattern, std::size_t first);
   void clear();
 
@@ -29,19 +29,20 @@ class SpringHessian {
   const std::shared_ptr<const EliminationOrder>& shared_pattern() const { return pattern_; }
   std::size_t first() const { return first_; }
 
-  /// s (with √q in it) and t of `count` consecutive blocks, 16 numbers each; zero where a lane has no
-  /// coupling. Different blocks may be stored by different threads.
+  /// Load and store s (including √q) and t of `count` consecutive blocks, 16 numbers each; zero where a lane
+  /// has no coupling. Different blocks may be stored by different threads.
   void load(std::size_t block, std::size_t count, float* sx, float* sy, float* sz, float* t) const;
   void store(std::size_t block, std::size_t count, const float* sx, const float* sy, const float* sz,
              const float* t);
 
-  /// Leaves out the negative eigenvalues: t, across s.
+  /// Removes the negative eigenvalues, which are t in the directions perpendicular to s.
   void project();
 
   /// Two words for each lane of a block, 16 first ones and then 16 second ones: the integers sx and sy in the
   /// lower and the upper half, then sz and t. Reading up to 15 words before or after is allowed.
   const std::uint32_t* coefficients() const { return coefficients_.data() + room; }
-  /// √q by block, of the integers in the upper halves: 2⁻¹⁶ of that of sx, sy and sz.
+  /// The unit √q by block for integers read from the upper halves of words: 2⁻¹⁶ times the unit of sx, sy and
+  /// sz.
   const float* units() const { return units_.data(); }
 
   /// Writable words of a block; different blocks may be written by different threads.

@@ -21,10 +21,11 @@ struct BlockSprings {
 };
 
 /// Sets couplings ∂²W/∂z² = s sᵀ + t I of W = ½ k (|z| − r)², z between the ends: s = √(k r/|z|) n and t = k
-/// (1 − r/|z|), n = z/|z|; s = 0 and t = k without a direction.
+/// (1 − r/|z|), n = z/|z|; s = 0 and t = k if the spring has no direction.
 void set_spring_hessian(const BlockSprings& springs, SpringHessian& couplings);
 
-/// s sᵀ += k n nᵀ, dashpots along n ∥ s: s grows to √(|s|² + k) n. Where s is zero, n is that of x.
+/// s sᵀ += k n nᵀ for dashpots along n ∥ s: s becomes √(|s|² + k) n. Where s is zero, n is the direction at
+/// x.
 void add_dashpot_hessian(const BlockSprings& dashpots, SpringHessian& couplings);
 
 }  // namespace muslin

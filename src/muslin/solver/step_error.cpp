@@ -9,16 +9,18 @@
 namespace muslin {
 namespace {
 
-/// A vertex may be off by what is allowed of its part divided by this.
+/// The error of a single vertex may be the allowed error of its part divided by this.
 constexpr double local_share = 0.03;
-/// M⁻¹ g bounds the error only where potentials are convex: it has to be this share of what is allowed.
+/// M⁻¹ g bounds the error only where potentials are convex: it must be at most this share of the allowed
+/// error.
 constexpr double bound_share = 0.1;
-/// The share of an edge that is always good enough.
+/// An error of this share of an edge is always allowed.
 constexpr double smallest = 1e-14;
-/// Work of the residual, as a share of what moves, over the tolerance: what correct_work can take out.
+/// Bound on the work of the residual over Σ m |Δx|², as a multiple of the tolerance: correct_work can remove
+/// this much.
 constexpr double leak_share = 0.01;
 constexpr double slowest = 0.9;
-/// A Newton step at least so long as a share of P⁻¹g was solved for.
+/// The linear system was solved for a part if |s| is at least this share of |P⁻¹g|.
 constexpr double solved_share = 0.5;
 
 }  // namespace
@@ -115,7 +117,7 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
     Part& part = parts_[p];
     const Sums& sum = sums[p];
     if (!(part.mass > 0)) continue;
-    // Rounding may leave the preconditioner indefinite. Then the ratio says nothing, and 1 is safe.
+    // Rounding may make the preconditioner indefinite. Then the ratio is meaningless, and 1 is safe.
     const double fallen = sum.norm / part.norm;
     double ratio = part.norm == 0 ? 0 : fallen >= 0 ? std::sqrt(fallen) : 1;
     if (part.gone > 0 && sum.step >= solved_share * solved_share * part.foretold)

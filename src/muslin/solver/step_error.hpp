@@ -1,15 +1,17 @@
-// How far an iterate of a step is from its minimum, seen as motion, and what of that is allowed.
+// StepError estimates the distance of an iterate from the minimum of a step, as a displacement, and compares
+// it with the allowed error.
 //
-// H ⪰ M where the potentials are convex, so that the mass-weighted norm of the error is at most that of
-// M⁻¹ g: where that alone is small enough nothing need be solved for. Otherwise the error after a Newton step
-// s is taken to be |s| ρ / (1 − ρ), plus what was taken from s. ρ is the rate of convergence: ‖g₊‖ / ‖g‖ in
-// the norm of the preconditioner, or the length of s over that of the last motion, whichever is less. The
-// latter counts only if s is as long as what the preconditioner alone foretells: a system that was not solved
-// for this part gives a short s as well. Bodies are judged part by part, so that a heavy one does not hide a
-// light one: the root mean square over the masses of a part, and 0.03 of the largest error of its vertices.
+// H ⪰ M where the potentials are convex, so the mass-weighted norm of the error is at most that of M⁻¹ g: if
+// this norm is small enough, no linear system need be solved. Otherwise the error after a Newton step s is
+// estimated as |s| ρ / (1 − ρ), plus the part of s that was removed by the guard and the line search. ρ is
+// the rate of convergence: the smaller of ‖g₊‖ / ‖g‖ in the norm of the preconditioner and |s| over the
+// length of the last motion. The second ratio counts only if s is at least half as long as the preconditioned
+// gradient, because a system that was not solved for this part gives a short s too. Parts are judged
+// separately, so that a heavy body does not hide a light one: the error of a part is the larger of the root
+// mean square over its masses and 0.03 of the largest error of its vertices.
 //
-// Allowed are tolerance · min(a dt², h): h the mean edge of the part, a the larger of the acceleration that
-// loads give it and of what it is accelerated by in this step (root mean squares).
+// The allowed error is tolerance · min(a dt², h), with h the mean edge of the part and a the larger of the
+// acceleration due to loads and the actual acceleration in this step (root mean squares).
 #pragma once
 
 #include <vector>
@@ -24,19 +26,19 @@ class StepError {
  public:
   StepError(const StepProblem& problem, const IncrementalPotential& function, double tolerance);
 
-  /// Whether the gradient at x is so small that no step is needed.
+  /// Returns true if the gradient at x is so small that no step is needed.
   bool bound(ConstVectors x, ConstVectors g);
-  /// Before a step: the gradient, and the preconditioned one.
+  /// Call before a Newton step, with the gradient g and the preconditioned gradient z.
   void begin(ConstVectors g, ConstVectors z);
-  /// After it: s was solved for, t d is what x went. Returns whether x is good enough. `from`: where the step
-  /// of the integrator began.
+  /// Call after a Newton step: s is the solution of the linear system, t d the displacement of x, `from` the
+  /// position at the beginning of the integrator's step. Returns true if x is accurate enough.
   bool end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVectors z, ConstVectors s, ConstVectors d,
            double t);
-  /// No step could be made; s is what was tried.
+  /// Call if no step could be made; s is the one that was tried.
   void give_up(ConstVectors s);
 
   double largest() const { return largest_; }  ///< estimate in the worst part [m]
-  /// The relative residual with which the next linear system makes the error small enough.
+  /// Returns the relative residual of the next linear system that makes the error small enough.
   double wanted_forcing() const;
 
  private:
@@ -44,7 +46,7 @@ class StepError {
     double mass = 0;
     double norm = 0;      ///< gᵀ z before the step
     double foretold = 0;  ///< Σ m z² before the step
-    double gone = 0;      ///< Σ m (t d)² of the Newton step before; 0: none
+    double gone = 0;      ///< Σ m (t d)² of the last Newton step; 0: none
     double allowed = 0;   ///< [m]
   };
   std::size_t part_of(std::size_t v) const {
@@ -59,7 +61,7 @@ class StepError {
   double tolerance_;
   std::vector<Part> parts_;
   double largest_ = 0;
-  double worst_ratio_ = 1;  ///< of estimate and allowed
+  double worst_ratio_ = 1;  ///< of estimated to allowed error
 };
 
 }  // namespace muslin

@@ -1,5 +1,5 @@
-// Kernels are the arithmetic of EisenstatPcg on groups of 16 vertices, compiled for several instruction sets.
-// All give the same bits.
+// Kernels holds the arithmetic of EisenstatPcg on groups of 16 vertices, compiled for several instruction
+// sets. All versions give the same bits.
 #pragma once
 
 #include <cstdint>
@@ -37,12 +37,13 @@ struct Sweep {
 struct Diagonal {
   const float* identity = nullptr;      ///< by position
   const std::uint16_t* free = nullptr;  ///< by group, bit l: lane l has a vertex that is free to move
-  const float* rest = nullptr;          ///< by group, further blocks in D; null if none
+  const float* rest = nullptr;          ///< by group, further diagonal blocks; null if none
 };
 
 struct Kernels {
-  /// M and A − D of each group, in ascending order; `upper` (m00, m10, m20) and `lower` (m11, m21, m22) by
-  /// position receive M for the groups to come. Returns the largest ‖A‖² / identity² of a free vertex.
+  /// Computes M and A − D of each group, in ascending order; `upper` (m00, m10, m20) and `lower` (m11, m21,
+  /// m22), by position, receive M for the later groups. Returns the largest ‖A‖² / identity² of a free
+  /// vertex.
   float (*factor)(const Sweep& sweep, const Diagonal& diagonal, Floats upper, Floats lower);
   /// r = F⁻¹ r; returns rᵀr.
   double (*solve_forward)(const Sweep& sweep, float* r);

@@ -1,4 +1,4 @@
-// SymmetricMatrix has 3×3 blocks between the vertices of a mesh, in float: the Hessian of a shell for the
+// SymmetricMatrix stores 3×3 blocks between the vertices of a mesh, in float: the Hessian of a shell for the
 // inner solver. Only the upper triangle with the diagonal is stored; a product reads a block twice, in its
 // own row and, transposed, in that of its column. Every row is therefore summed independently, in the same
 // order for any thread count, with half the memory traffic of full rows.
@@ -31,11 +31,13 @@ class SymmetricMatrix {
 
   PairBlocks blocks() { return {columns_.data()}; }
 
-  /// Takes central blocks B off, which add B to the diagonal and −B between two vertices; afterwards every
-  /// row sums to zero. `slots`: the block of each coupling, 16 for each block of couplings, −1 for none.
+  /// Subtracts couplings, each of which adds a block B on the diagonal and −B between two vertices;
+  /// afterwards every row sums to zero. `slots`: the block of each coupling, 16 for each block of couplings,
+  /// −1 for none.
   void subtract(const SpringHessian& couplings, std::span<const int> slots);
 
-  /// y += A p on the body's vertices, three floats and a zero each, starting at the body; returns pᵀA p.
+  /// y += A p on the body's vertices, three floats and a zero per vertex; p and y begin at the body's first
+  /// vertex. Returns pᵀA p.
   double add_product(const Float4* p, Float4* y) const;
   /// Adds the diagonal blocks: xx, xy, xz, yy, yz, zz are the components of `upper` and `lower`.
   void add_diagonal(Floats upper, Floats lower) const;

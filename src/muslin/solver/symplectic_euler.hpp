@@ -7,9 +7,9 @@
 
 namespace muslin {
 
-/// v_{n+1} = v_n + dt M⁻¹ f(x_n), x_{n+1} = x_n + dt v_{n+1}, into x. Not converged where the step is longer
-/// than the stable 2/ω_max: the curvature along the change of velocity, soon dominated by the fastest growing
-/// mode, then exceeds 4/dt². The failure text names the stable step.
+/// v_{n+1} = v_n + dt M⁻¹ f(x_n), x_{n+1} = x_n + dt v_{n+1}, into x. The step is reported as not converged
+/// if it is longer than the stable step 2/ω_max: then the curvature along the change of velocity, which the
+/// fastest growing mode soon dominates, exceeds 4/dt². The failure text names the stable step.
 StepReport solve_symplectic(const StepContext& context, const StepProblem& problem, const State& state,
                             std::vector<Vec3>& x);
 

@@ -1,7 +1,8 @@
-// The contour is the result of marching squares or cubes on the lattice's samples of the distance field. The
-// samples' values are constant, only their positions change, so the topology is built once and every vertex
-// is carried by the lattice (Embedding). It is closed, also where the solid ends exactly on the lattice's
-// boundary. Source: Lorensen and Cline, Marching Cubes, 1987; tables and rules in docs/theory/contour.md.
+// Contour is the surface found by marching squares or cubes on the lattice's samples of the distance field.
+// The samples' values are constant and only their positions change, so the topology is built once and the
+// lattice carries every vertex (Embedding). The contour is closed, even where the solid ends exactly on the
+// lattice's boundary. Source: Lorensen and Cline, Marching Cubes, 1987; tables and rules in
+// docs/theory/contour.md.
 #pragma once
 
 #include <span>
@@ -32,11 +33,11 @@ struct Contour {
 /// `solid` is the closed mesh the lattice was built from, `distance` its field. The mesh is a closed
 /// 2-manifold, each edge traversed once in either direction.
 ///
-/// Cubes: features with no lattice vertex inside are lost, in particular walls thinner than a voxel; the mesh
-/// is empty if there is nothing else. Squares: the outline in the middle of the solid's thickness, extruded
-/// to its bounds; thin along the axis of the lattice's smallest extent, which must be one voxel. In both
-/// cases `Contour::distance` measures the features missed between samples. Errors: input, if squares are
-/// requested for a lattice thicker than one voxel.
+/// Cubes lose features with no lattice vertex inside, in particular walls thinner than a voxel; the mesh is
+/// empty if there is nothing else. Squares give the outline in the middle of the solid's thickness, extruded
+/// to its bounds; the solid is thin along the axis of the lattice's smallest extent, which must be one voxel.
+/// In both cases `Contour::distance` measures the features missed between samples. Errors: input, if squares
+/// are requested for a lattice thicker than one voxel.
 MUSLIN_API Contour build_contour(const Lattice& lattice, const Mesh& solid, const SignedDistance& distance,
                                  ContourMethod method);
 

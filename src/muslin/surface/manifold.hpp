@@ -1,4 +1,4 @@
-// Makes a closed surface a manifold: where two sheets of it meet in an edge or a vertex, the edge or vertex
+// Makes a closed surface a manifold: where two of its sheets meet in an edge or a vertex, the edge or vertex
 // is duplicated, so that every edge has exactly two triangles and every vertex one fan.
 #pragma once
 
@@ -19,8 +19,8 @@ struct PartTriangle {
 
 struct Manifold {
   std::vector<Vec3i> triangles;
-  /// #V the vertices of the input that each vertex is the mean of: twice the same but for a vertex put into
-  /// the middle of an edge.
+  /// #V, the two vertices of the input whose mean each vertex is. Both are the same except for a vertex
+  /// inserted in the middle of an edge.
   std::vector<std::array<int, 2>> sources;
 };
 

@@ -1,5 +1,5 @@
-// Computes marching cubes and marching squares on a lattice's vertices: the raw triangles, which contour.cpp
-// makes one manifold.
+// Computes marching cubes and marching squares on a lattice's vertices: the raw triangles, from which
+// contour.cpp makes a manifold.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ struct NamedTriangle {
   std::array<std::uint64_t, 3> names{};
   std::int64_t part = 0;
 };
-/// Numbers the names in ascending order; returns them.
+/// Numbers the vertices in ascending order of their names; returns the names.
 std::vector<std::uint64_t> number_vertices(const std::vector<std::vector<NamedTriangle>>& blocks,
                                            std::vector<PartTriangle>& triangles);
 

@@ -1,5 +1,5 @@
 // Derives the 256 configurations of marching cubes from one rule: on every face of the cube each run of
-// inside corners is cut off separately. The rule depends on the face's own corners only, so two cubes cut
+// inside corners is cut off separately. The rule depends only on the corners of the face, so two cubes cut
 // their common face identically and the surface has no cracks. See docs/theory/contour.md.
 #pragma once
 

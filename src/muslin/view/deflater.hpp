@@ -22,7 +22,7 @@ class Deflater {
   std::unique_ptr<Stream> stream_;
 };
 
-/// Encodes as in RFC 4648, with padding, without line ends.
+/// Encodes bytes in base64 (RFC 4648), with padding, without line breaks.
 std::string base64(std::string_view bytes);
 
 }  // namespace muslin

@@ -9,8 +9,8 @@
 
 namespace muslin {
 
-/// Corners of triangles are drawn vertices: one for every point, smooth normal and place in the pattern that
-/// meet. Edges that are sharp at rest stay crisp; seams of the pattern do not crease.
+/// Corners of triangles are drawn vertices: one for every combination of point, smooth normal and position in
+/// the pattern. Edges that are sharp at rest stay crisp; seams of the pattern do not crease.
 struct PageSurface {
   std::vector<std::uint32_t> triangles;  ///< 3 × #T drawn vertices
   std::vector<std::uint32_t> points;     ///< #D, the point that moves each drawn vertex

@@ -1,5 +1,5 @@
 // PointPacker compresses moving points: 16-bit numbers over the box of their whole motion, as differences
-// from a prediction by the frames before and the neighbours.
+// from a prediction made from earlier frames and neighbours.
 #pragma once
 
 #include <array>

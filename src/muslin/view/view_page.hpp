@@ -12,7 +12,7 @@
 namespace muslin {
 
 struct ViewOptions {
-  /// Size limit of the page. A run too large omits first contours and lattices, then frames.
+  /// Size limit of the page. For a large run, contours and lattices are left out first, then frames.
   std::uint64_t largest_bytes = 16'000'000;
 };
 

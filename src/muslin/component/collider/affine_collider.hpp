@@ -1,5 +1,5 @@
-// AffineCollider is a collider that four vertices carry: the corners of a frame (geometry/affine_frame.hpp).
-// It moves rigidly.
+// AffineCollider is a collider that moves rigidly and is carried by four vertices, the corners of a frame
+// (geometry/affine_frame.hpp).
 //
 // Contact sees a sphere as a point and a capsule as a segment, both thickened by their radius, a plane as a
 // half-space, a box or mesh as its triangles.
@@ -27,7 +27,7 @@ class AffineCollider : public ColliderComponent {
   std::optional<ContactPart> contact_part() const override;
 
  protected:
-  /// Fills in skin, vertex_count and what ColliderComponent::finish does.
+  /// Fills in skin and vertex_count and calls ColliderComponent::finish.
   void finish_affine();
 };
 

@@ -1,4 +1,5 @@
-// ColliderComponent is what components from a [[collider]] share: their shape as a mesh, placed in the world.
+// ColliderComponent is the base of components from a [[collider]]: their shape as a mesh, placed in the
+// world.
 #pragma once
 
 #include <string>
@@ -25,7 +26,7 @@ class ColliderComponent : public Component {
   /// Fills in settings, name, mesh and report. Errors: input and file, with the place in the scene and the
   /// mesh file.
   void begin(const ColliderSettings& the_settings, const ComponentInputs& inputs);
-  /// Fills in mean_edge and statistics; skin and vertex_count are there. Errors: input.
+  /// Fills in mean_edge and statistics; skin and vertex_count must be set. Errors: input.
   void finish();
 };
 

@@ -1,4 +1,4 @@
-// ColliderSettings holds what a scene says of a [[collider]]: an obstacle, or a rigid body.
+// ColliderSettings holds the settings of a [[collider]]: an obstacle or a rigid body.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace muslin {
 
-/// An obstacle for bodies, static or moving; with a density it is a rigid body itself.
+/// An obstacle for bodies, static or moving; with a density it is a rigid body.
 struct ColliderSettings {
   enum class Shape { plane, sphere, capsule, box, mesh } shape = Shape::plane;
   std::string name;
@@ -23,13 +23,13 @@ struct ColliderSettings {
   std::string mesh;              ///< path as written; relative to the scene file
   Place mesh_place;
   Vec3 translate = Vec3::Zero();  ///< of a mesh [m]
-  Vec3 rotate = Vec3::Zero();     ///< of a mesh, or of a box about its centre [degrees], as of a body
+  Vec3 rotate = Vec3::Zero();     ///< of a mesh, or of a box about its centre [degrees], as for a body
   Vec3 scale = Vec3::Ones();      ///< of a mesh
   Motion motion;                  ///< relative to the shape's placement
   std::optional<Vec3> pivot;      ///< of the motion [m]; default: the middle of the shape
   std::string sequence;           ///< path of the samples that a mesh follows; empty: none
   Place sequence_place;
-  std::optional<double> frame_rate;  ///< of the samples, but of those of an .mdd [1/s]; default: the scene's
+  std::optional<double> frame_rate;  ///< of the samples, except of an .mdd [1/s]; default: the scene's
   std::optional<double> start;       ///< time of the first sample [s]; default: that of the file, or 0
   std::optional<double> density;     ///< [kg/m³]; if given, it moves dynamically
   Vec3 velocity = Vec3::Zero();      ///< initial, with a density [m/s]

@@ -1,4 +1,4 @@
-// Kinematic components have scripted motion and no mass: a collider that stands or moves rigidly along
+// Kinematic components have scripted motion and no mass: a collider that is static or moves rigidly along
 // keyframes, and a mesh whose vertices follow the samples of an animation.
 #pragma once
 

@@ -60,7 +60,8 @@ class LatticeBody final : public Component {
 /// file.
 std::shared_ptr<Component> build_lattice_body(const BodySettings& settings, const ComponentInputs& inputs);
 
-/// Returns the component as a lattice, null if it is of another kind: for what concerns lattices alone.
+/// Returns the component as a lattice, null if it is of another kind. Only for features that lattices alone
+/// have.
 const LatticeBody* as_lattice(const Component& component);
 
 }  // namespace muslin

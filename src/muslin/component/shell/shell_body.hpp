@@ -1,8 +1,9 @@
 // ShellBody is a mesh as thin cloth: its vertices are the degrees of freedom, its triangles and the hinges
 // between them carry membrane and bending energy.
 //
-// Contact sees its triangles, thickened by half its thickness: that of the settings, else 0.5 mm, but no more
-// than a tenth of its mean edge. The stiffness of a contact is 0.15 × its mean membrane modulus [N/m].
+// Contact sees its triangles, thickened by half its thickness. The thickness is that of the settings, or else
+// 0.5 mm, but at most a tenth of its mean edge. The stiffness of a contact is 0.15 × its mean membrane
+// modulus [N/m].
 #pragma once
 
 #include <memory>
@@ -45,7 +46,7 @@ class ShellBody final : public Component {
 /// Builds a body of BodyModel::shell. Errors: input and file, with the place in the scene and the mesh file.
 std::shared_ptr<Component> build_shell_body(const BodySettings& settings, const ComponentInputs& inputs);
 
-/// Returns the component as a shell, null if it is of another kind: for what concerns shells alone.
+/// Returns the component as a shell, null if it is of another kind. Only for features that shells alone have.
 const ShellBody* as_shell(const Component& component);
 
 }  // namespace muslin
