@@ -28,8 +28,8 @@ struct Camera {
 };
 
 /// Finds one static camera that sees the points of all frames. The position for the given direction is the
-/// nearest possible: each of the four sides of the view touches a point. Only a few sums are stored, not the
-/// points.
+/// nearest possible: each of the four sides of the view touches a point. Only four extreme values are stored,
+/// not the points.
 class CameraFit {
  public:
   /// aspect = width / height. Throws Error(usage) on options outside their ranges.
