@@ -15,7 +15,7 @@ void add_build(CLI::App& program) {
     bool quiet = false;
     std::vector<std::string> set;
   };
-  auto* command = program.add_subcommand("build", "write every stage between mesh and simulation as files");
+  auto* command = program.add_subcommand("build", "write every stage between mesh and simulation to files");
   auto a = std::make_shared<Arguments>();
   command->add_option("SCENE", a->scene, "scene file (.toml)")->required();
   command->add_option("-o,--output", a->directory, "folder for the stages")->required();

@@ -16,11 +16,11 @@ void add_check(CLI::App& program) {
     std::vector<std::string> set;
   };
   auto* command =
-      program.add_subcommand("check", "what is wrong with a scene or mesh, and what will be built");
+      program.add_subcommand("check", "report errors of a scene or mesh, and what will be built");
   auto a = std::make_shared<Arguments>();
   command->add_option("FILE", a->file, "scene (.toml) or mesh file")->required();
-  command->add_flag("--json", a->json, "for programs");
-  command->add_option("--picture", a->picture, "FILE.png of the start of a scene, crossings marked");
+  command->add_flag("--json", a->json, "print JSON");
+  command->add_option("--picture", a->picture, "write FILE.png of the start of a scene with crossings marked");
   command->add_option("--set", a->set, "KEY=VALUE overrides a setting of the scene")->allow_extra_args(false);
   command->callback([a] {
     listen_for_interrupts();
@@ -41,7 +41,7 @@ void add_check(CLI::App& program) {
       return;
     }
     if (!a->picture.empty())
-      throw Error(ErrorKind::usage, "--picture is for scenes", "name a .toml file, or leave it out");
+      throw Error(ErrorKind::usage, "--picture is for scenes", "name a .toml file, or omit it");
     const MeshFile file = read_mesh(a->file);
     require_usable(file.mesh, a->file);
     MeshReport report = inspect(file.mesh);

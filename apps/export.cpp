@@ -19,9 +19,9 @@ void add_export(CLI::App& program) {
   command->add_option("RUN", a->run, "run directory")->required();
   command
       ->add_option("FILE", a->file,
-                   "FILE.pc2, .mdd, .obj, .ply, .usda, .glb, .gltf or .vtu; the suffix decides")
+                   "FILE.pc2, .mdd, .obj, .ply, .usda, .glb, .gltf or .vtu; the suffix selects the format")
       ->required();
-  command->add_option("--body", a->body, "this body (default: the only one; .usda: all)");
+  command->add_option("--body", a->body, "body to export (default: the only one; .usda: all)");
   command->add_option("--surface", a->surface, "skin (default) or contour")
       ->check(CLI::IsMember({"skin", "contour"}));
   command->add_flag("--quiet", a->quiet, "no progress");

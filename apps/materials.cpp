@@ -15,7 +15,7 @@ namespace {
 
 std::string table() {
   std::string text = fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}  {}\n", "name", "density", "edge",
-                                 "face diag.", "body diag.", "what it is");
+                                 "face diag.", "body diag.", "description");
   text += fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}\n", "", "kg/m3", "N/m2", "N/m2", "N/m2");
   for (const std::string& name : material_names()) {
     const Material m = find_material(name);
@@ -72,7 +72,7 @@ void add_materials(CLI::App& program) {
   auto name = std::make_shared<std::string>();
   command->add_option("NAME", *name, "material");
   auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "for programs: a list of all, or the one");
+  command->add_flag("--json", *json, "print JSON: a list of all, or the one named");
   command->callback([name, json] {
     if (*json) {
       print(json_of(*name));

@@ -87,13 +87,13 @@ void add_render(CLI::App& program) {
   command->add_option("--stretch-max", a->stretch_max, "upper end of the stretch colours [%]")
       ->check(positive_number());
   command->add_option("--size", a->size, "WIDTHxHEIGHT in pixels (default: 960x540)");
-  command->add_option("--samples", a->picture.render.samples, "rays a pixel (default: 4)")
+  command->add_option("--samples", a->picture.render.samples, "rays per pixel (default: 4)")
       ->check(positive_integer());
   command->add_option("--azimuth", a->picture.camera.azimuth,
                       "camera, degrees from +z towards +x (default: 30)");
   command->add_option("--elevation", a->picture.camera.elevation,
                       "camera, degrees above the horizon (default: 15)");
-  command->add_flag("--no-ground", a->no_ground, "no ground below");
+  command->add_flag("--no-ground", a->no_ground, "do not draw the ground");
   command->add_option("--threads", a->threads, "threads (default: one per core)")
       ->check(non_negative_integer());
   command->add_flag("--quiet", a->quiet, "no progress");

@@ -53,7 +53,7 @@ void run(const RunArguments& arguments) {
       line.finish();
       if (error.kind() != ErrorKind::interrupted) throw;
       throw Error(ErrorKind::interrupted, error.problem(),
-                  fmt::format("go on with: muslin run {} -o {} --resume", arguments.scene,
+                  fmt::format("resume with: muslin run {} -o {} --resume", arguments.scene,
                               options.directory.string()));
     }
   }
@@ -74,22 +74,22 @@ void add_run(CLI::App& program) {
   auto arguments = std::make_shared<RunArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (.toml)")->required();
   command->add_option("-o,--output", arguments->directory, "run directory (default: out/SCENE)");
-  command->add_option("--frames", arguments->frames, "last frame (default: as the scene says)")
+  command->add_option("--frames", arguments->frames, "last frame (default: the scene's)")
       ->check(non_negative_integer());
   command
-      ->add_option("--threads", arguments->threads, "threads (default: one per core); the result is the same")
+      ->add_option("--threads", arguments->threads, "threads (default: one per core); results do not depend on it")
       ->check(non_negative_integer());
-  command->add_flag("--resume", arguments->resume, "go on from the last checkpoint");
+  command->add_flag("--resume", arguments->resume, "continue from the last checkpoint");
   command
       ->add_option("--resume-from", arguments->resume_from,
-                   "go back to this frame and on from there, with the scene as it now is")
+                   "resume from this frame, with the current scene")
       ->check(non_negative_integer());
   command->add_flag("--keep-states", arguments->keep_states,
-                    "keep the state of every frame, so that --resume-from can take any");
+                    "keep the state of every frame for --resume-from");
   command->add_option("--set", arguments->set, "KEY=VALUE overrides a setting, e.g. time.duration=2")
       ->allow_extra_args(false);
   command->add_flag("--allow-tangled", arguments->allow_tangled,
-                    "start although surfaces cross; these are free of each other until they part");
+                    "start although surfaces cross; these do not touch until they part");
   command->add_flag("--quiet", arguments->quiet, "no progress, only errors and warnings");
   command->callback([arguments] { run(*arguments); });
 }

@@ -9,11 +9,11 @@
 namespace muslin::app {
 
 void add_schema(CLI::App& program) {
-  auto* command = program.add_subcommand("schema", "the JSON Schema of scene files, for editors");
+  auto* command = program.add_subcommand("schema", "print the JSON Schema of scene files, for editors");
   auto markdown = std::make_shared<bool>(false);
   auto python = std::make_shared<bool>(false);
-  auto* one = command->add_flag("--markdown", *markdown, "the tables of the guide instead");
-  command->add_flag("--python", *python, "types for Python instead")->excludes(one);
+  auto* one = command->add_flag("--markdown", *markdown, "print the tables of the guide instead");
+  command->add_flag("--python", *python, "print types for Python instead")->excludes(one);
   command->callback([markdown, python] {
     print(*markdown ? schema::markdown(scene_table())
           : *python ? schema::python_types(scene_table())

@@ -23,8 +23,8 @@ CLI::Validator number(bool integer, bool zero, const char* what) {
 }  // namespace
 
 CLI::Validator positive_number() { return number(false, false, "a number above 0"); }
-CLI::Validator non_negative_number() { return number(false, true, "a number from 0 up"); }
+CLI::Validator non_negative_number() { return number(false, true, "a number of at least 0"); }
 CLI::Validator positive_integer() { return number(true, false, "a whole number above 0"); }
-CLI::Validator non_negative_integer() { return number(true, true, "a whole number from 0 up"); }
+CLI::Validator non_negative_integer() { return number(true, true, "a whole number of at least 0"); }
 
 }  // namespace muslin::app

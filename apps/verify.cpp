@@ -80,16 +80,16 @@ void add_verify(CLI::App& program) {
     std::string test;
     bool list = false;
   };
-  auto* command = program.add_subcommand("verify", "run physics against closed forms and published numbers");
+  auto* command = program.add_subcommand("verify", "compare simulations with closed forms and published numbers");
   auto a = std::make_shared<Arguments>();
-  command->add_option("TEST", a->test, "one test, or the first word of several (default: all)");
-  command->add_flag("--list", a->list, "what there is");
+  command->add_option("TEST", a->test, "a test, or the first word of several (default: all)");
+  command->add_flag("--list", a->list, "list the tests");
   command->callback([a] {
     if (a->list) return print(list());
     // Ctrl-C ends the program at once: nothing is written that could be lost.
     const int failed = verify(a->test.empty() ? verify_cases() : find_cases(a->test));
     if (failed > 0)
-      throw Error(ErrorKind::solver, fmt::format("{} of the numbers are off", failed),
+      throw Error(ErrorKind::solver, fmt::format("{} of the numbers are out of tolerance", failed),
                   "see the lines with FAIL");
   });
 }

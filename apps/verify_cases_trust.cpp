@@ -354,7 +354,7 @@ std::vector<VerifyCase> trust_cases() {
   std::vector<VerifyCase> cases = {
       {"trust-rubber-ball", "a rubber ball bounces no higher than it was dropped from, and straight",
        "second law", false, rubber_ball},
-      {"trust-ball-on-held-cloth", "a light ball sinks into held cloth and is thrown back", "measurement",
+      {"trust-ball-on-held-cloth", "a light ball sinks into held cloth and rebounds", "measurement",
        false, ball_on_held_cloth},
       {"trust-stiff-fabrics", "stiff fabrics that fall on a ball gain no energy", "second law", true,
        stiff_fabrics},

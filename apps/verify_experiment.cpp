@@ -143,7 +143,7 @@ Vec3 centre(const Simulation& simulation, const std::string& name, bool velocity
 std::size_t vertex(const Simulation& simulation, int i, int j, int k) {
   const int index = as_lattice(simulation.model().bodies.front())->lattice.find_vertex({i, j, k});
   if (index < 0)
-    throw Error(ErrorKind::usage, fmt::format("no vertex ({}, {}, {})", i, j, k), "mend the case");
+    throw Error(ErrorKind::usage, fmt::format("no vertex ({}, {}, {})", i, j, k), "correct the case");
   return static_cast<std::size_t>(index);
 }
 

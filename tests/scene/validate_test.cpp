@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Scene& s) { s.bodies[0].material.volume_modulus = -1; }},
         Mistake{"[[body]] `block`: `velocity` is not finite",
                 [](Scene& s) { s.bodies[0].velocity.x() = nan; }},
-        Mistake{"[[body]] `block`: `model` is none of its choices",
+        Mistake{"[[body]] `block`: `model` is not one of its choices",
                 [](Scene& s) { s.bodies[0].model = BodyModel::rigid; }},
         Mistake{"[[body]] `sheet`: another one has its name", [](Scene& s) { s.bodies[0].name = "sheet"; }},
         Mistake{"[[body]]: it has no name", [](Scene& s) { s.bodies[0].name.clear(); }},
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
                   ShellMaterial& shell = *s.bodies[1].material.shell;
                   shell.bending_warp = 1, shell.bending_weft = 0.01, shell.bending_bias = 0;
                 }},
-        Mistake{"[[body]] `block`: `voxels` is none of its choices",
+        Mistake{"[[body]] `block`: `voxels` is not one of its choices",
                 [](Scene& s) { s.bodies[0].lattice.rule = static_cast<VoxelRule>(7); }},
         Mistake{"[[body]] `block`: a colour is red, green and blue from 0 to 1",
                 [](Scene& s) { s.bodies[0].colour = Vec3(0, nan, 0); }},

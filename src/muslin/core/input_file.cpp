@@ -37,7 +37,7 @@ std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes
   if (!S_ISREG(status.st_mode)) throw refuse("is not a regular file", "copy the data to a file first");
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (size > max_bytes) {
-    throw refuse("is larger than " + std::to_string(max_bytes >> 20) + " MiB", "is it the right file?");
+    throw refuse("is larger than " + std::to_string(max_bytes >> 20) + " MiB", "check that it is the right file");
   }
   std::string bytes;
   try {

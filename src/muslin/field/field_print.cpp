@@ -104,7 +104,7 @@ Vec3i parse_margin(std::string_view text) {
 std::string print_field(const Mesh& mesh, const FieldPrintSettings& settings) {
   const double width = settings.voxel_width;
   if (!(width > 0) || !std::isfinite(width))
-    throw Error(ErrorKind::usage, fmt::format("the voxel width {} m makes no sense", width),
+    throw Error(ErrorKind::usage, fmt::format("the voxel width {} m is invalid", width),
                 "give a positive width in metres");
   if (settings.margin.minCoeff() < 0 || settings.margin.maxCoeff() > widest_margin)
     throw Error(ErrorKind::usage, "the margin is negative or too wide",

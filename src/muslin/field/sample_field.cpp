@@ -87,7 +87,7 @@ DistanceField sample_field(const SignedDistance& distance, const Grid& grid, dou
                            const Progress& progress) {
   if (!(grid.width > 0) || !std::isfinite(grid.width) || !grid.origin.allFinite() ||
       grid.samples.minCoeff() < 0)
-    throw Error(ErrorKind::usage, "a distance field was asked for on a grid that makes no sense",
+    throw Error(ErrorKind::usage, "the grid of a distance field is invalid",
                 "give it a finite origin, a positive width and sample counts that are not negative");
   if (!(band >= 0))
     throw Error(ErrorKind::usage, "the band of a distance field is negative", "give 0 or more");

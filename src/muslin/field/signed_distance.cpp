@@ -30,7 +30,7 @@ SignedDistance::SignedDistance(const Mesh& mesh) {
   for (const Vec3i& triangle : triangulation.triangles)
     for (int k = 0; k < 3; ++k) impl_->bounds.extend(mesh.positions[static_cast<std::size_t>(triangle[k])]);
   if (triangulation.triangles.empty())
-    throw Error(ErrorKind::input, "the distance of a mesh without faces was asked for", "give it faces");
+    throw Error(ErrorKind::input, "the distance to a mesh without faces is undefined", "give it faces");
 }
 
 SignedDistance::~SignedDistance() = default;

@@ -228,7 +228,7 @@ ClosestPointQuery& ClosestPointQuery::operator=(ClosestPointQuery&&) noexcept = 
 
 ClosestPoint ClosestPointQuery::operator()(const Vec3& point, double max_distance, int hint) const {
   if (!point.allFinite())
-    throw Error(ErrorKind::usage, "the distance of a point that is not finite was asked for",
+    throw Error(ErrorKind::usage, "the distance of a point that is not finite is undefined",
                 "check the coordinates");
   Candidate best;
   best.squared_distance = max_distance * max_distance;

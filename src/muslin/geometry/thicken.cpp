@@ -47,7 +47,7 @@ bool is_closed(const Mesh& mesh) {
 
 Mesh thicken(const Mesh& mesh, double thickness) {
   if (!(thickness > 0) || !std::isfinite(thickness))
-    throw Error(ErrorKind::usage, "a sheet was given the thickness " + std::to_string(thickness) + " m",
+    throw Error(ErrorKind::usage, "a sheet has the thickness" + std::to_string(thickness) + " m",
                 "give a positive thickness in metres");
   const std::size_t face_count = mesh.face_count();
   const std::vector<EdgeUse> uses = edge_uses(mesh);

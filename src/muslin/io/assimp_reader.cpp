@@ -38,7 +38,7 @@ class AssimpReader {
     }
     if (scene == nullptr || scene->mRootNode == nullptr) {
       std::replace(problem.begin(), problem.end(), '\n', ' ');
-      refuse("the file cannot be read: " + problem.substr(0, 200), "export it again, best as OBJ");
+      refuse("the file cannot be read: " + problem.substr(0, 200), "export it again, preferably as OBJ");
     }
     visit(*scene, scene->mRootNode, to_metres(*scene));
     std::string extra =
@@ -85,7 +85,7 @@ class AssimpReader {
       scene.mMetaData->Get("UpAxisSign", sign);
     }
     if (!(centimetres > 1e-6 && centimetres < 1e9))
-      refuse("the unit of the file is impossible", "export it again");
+      refuse("the unit of the file is invalid", "export it again");
     Mat3 turn = Mat3::Identity();
     const double s = sign < 0 ? -1 : 1;
     if (up == 2)

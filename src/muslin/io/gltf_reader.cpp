@@ -262,7 +262,7 @@ class GltfReader {
     const int wanted = components == 1   ? TINYGLTF_TYPE_SCALAR
                        : components == 2 ? TINYGLTF_TYPE_VEC2
                                          : TINYGLTF_TYPE_VEC3;
-    if (accessor.type != wanted) refuse("an accessor has a type that does not fit its use");
+    if (accessor.type != wanted) refuse("an accessor has the wrong type for its use");
     result.components = components;
     result.normalized = accessor.normalized;
     result.count = accessor.count;

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 void check(const PointSequence& sequence, const std::string& file) {
   for (std::size_t s = 0; s < sequence.times.size(); ++s) {
     if (!std::isfinite(sequence.times[s]) || (s > 0 && sequence.times[s] <= sequence.times[s - 1]))
-      refuse(file, fmt::format("the time of sample {} does not come after the one before", s),
+      refuse(file, fmt::format("the time of sample {} is not after the previous one", s),
              "the cache is damaged: export it again");
   }
   for (std::size_t i = 0; i < sequence.positions.size(); ++i) {
@@ -62,7 +62,7 @@ void require_samples(std::size_t bytes, std::int64_t points, std::int64_t sample
 PointSequence read_pc2(std::string_view bytes, const std::string& file, double frame_rate) {
   constexpr std::size_t header = 32;
   if (bytes.size() < header || bytes.substr(0, 12) != std::string_view("POINTCACHE2\0", 12))
-    refuse(file, "this is no PC2 point cache", "give the file the suffix of its real format");
+    refuse(file, "this is not a PC2 point cache", "give the file the suffix of its real format");
   const auto points = load<std::int32_t>(bytes.data() + 16, false);
   const auto start = static_cast<double>(load<float>(bytes.data() + 20, false));
   const auto rate = static_cast<double>(load<float>(bytes.data() + 24, false));
@@ -77,7 +77,7 @@ PointSequence read_pc2(std::string_view bytes, const std::string& file, double f
 
 PointSequence read_mdd(std::string_view bytes, const std::string& file) {
   constexpr std::size_t header = 8;
-  if (bytes.size() < header) refuse(file, "this is no MDD point cache", "export the animation again");
+  if (bytes.size() < header) refuse(file, "this is not an MDD point cache", "export the animation again");
   const auto samples = load<std::int32_t>(bytes.data(), true);
   const auto points = load<std::int32_t>(bytes.data() + 4, true);
   const std::size_t times = samples > 0 ? 4 * static_cast<std::size_t>(samples) : 0;
@@ -115,7 +115,7 @@ std::map<std::uint64_t, fs::path> numbered_files(const fs::path& pattern) {
 PointSequence read_numbered(const fs::path& pattern, double frame_rate) {
   const std::map<std::uint64_t, fs::path> files = numbered_files(pattern);
   if (files.empty())
-    throw Error(ErrorKind::file, Place{pattern.string()}, "there is no file of this pattern",
+    throw Error(ErrorKind::file, Place{pattern.string()}, "no file matches this pattern",
                 "the # stand for the number, as in walk.0001.obj");
   PointSequence sequence;
   for (const auto& [number, path] : files) {

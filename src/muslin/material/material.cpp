@@ -63,7 +63,7 @@ Material parse_material(std::string_view text, const std::string& file) {
     const TomlTable table = keys.open(*lattice, "`lattice` of the material file");
     keys.read(table, material);
     if (material.youngs_modulus && material.law == LatticeLaw::springs)
-      throw table.error("youngs_modulus", "a material file has springs by their three moduli",
+      throw table.error("youngs_modulus", "a material file defines springs by their three moduli",
                         "give these, or law = \"neo_hookean\"");
   }
   if (const TomlValue* reference = top.find("reference")) {

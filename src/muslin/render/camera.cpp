@@ -29,7 +29,7 @@ CameraFit::CameraFit(const CameraOptions& options, double aspect) : options_(opt
           "the field of view is not within 5…120 degrees", "give a field of view such as 32");
   require(options.distance_factor > 0 && options.distance_factor <= 1000,
           "the camera's distance factor is not within 0…1000", "give 1 to fit the scene, 2 for twice as far");
-  require(aspect > 0 && std::isfinite(aspect), "the picture has no sides", "give a width and a height");
+  require(aspect > 0 && std::isfinite(aspect), "the picture has no area", "give a width and a height");
   const double degree = std::numbers::pi / 180;
   const double a = options.azimuth * degree;
   const double e = options.elevation * degree;

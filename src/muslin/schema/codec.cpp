@@ -37,7 +37,7 @@ void WholeNumberCodec::check(const Key& key, std::int64_t x, const Subject& subj
 
 void WordCodec::check_index(const Key& key, std::size_t index, const Subject& subject) {
   if (index >= key.choices.size())
-    throw subject.error(key.name, fmt::format("`{}` is none of its choices", key.name),
+    throw subject.error(key.name, fmt::format("`{}` is not one of its choices", key.name),
                         fmt::format("use one of {}", name_list(key.choices)));
 }
 

@@ -196,7 +196,7 @@ StepReport advance(const Model& model, const Terms& terms, RunState& state, doub
     scratch.prepare(model);
     StepReport report = Advance(model, terms, state, scratch).by(length);
     const int lost = report.made() ? vertex_out_of_range(state.motion.positions) : -1;
-    if (lost >= 0) report = {.worst_vertex = lost, .failure = "it flew farther than 1.5e11 m"};
+    if (lost >= 0) report = {.worst_vertex = lost, .failure = "it is farther than 1.5e11 m from the origin"};
     if (!report.made()) go_back();
     return report;
   } catch (...) {

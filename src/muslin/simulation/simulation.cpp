@@ -16,7 +16,7 @@ namespace muslin {
 namespace {
 
 std::shared_ptr<const Model> not_null(std::shared_ptr<const Model> model) {
-  require(model != nullptr, "a simulation needs a model, and got none",
+  require(model != nullptr, "a simulation needs a model",
           "give the one that build_model returns");
   return model;
 }

@@ -63,7 +63,7 @@ class Newton {
 
   StepReport run() {
     if (!start()) {
-      report_.failure = "the held vertices cannot reach their targets within this step";
+      report_.failure = "the held vertices cannot reach their targets in this step";
       return report_;
     }
     pcg_.begin_step();

@@ -136,7 +136,7 @@ StepReport Stepper::step(const SolverSettings& settings, const StepContext& cont
                          const StepProblem& problem, State& state) {
   require(problem.masses.size() == state.positions.size(), "a step needs one mass for each vertex",
           "give #V masses");
-  require(problem.fixed.size() == state.positions.size(), "a step needs to know which vertices are fixed",
+  require(problem.fixed.size() == state.positions.size(), "a step needs one flag for each vertex",
           "give #V flags");
   require(state.velocities.size() == state.positions.size(), "a state needs one velocity for each vertex",
           "give #V velocities");
