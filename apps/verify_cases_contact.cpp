@@ -146,7 +146,7 @@ std::vector<Comparison> no_energy_from_nothing() {
 
 std::vector<VerifyCase> contact_cases() {
   std::vector<VerifyCase> cases = {
-      {"contact-resume", "contact and friction go on after a stop with the same bits", "promise", false,
+      {"contact-resume", "contact and friction continue after a stop with the same bits", "promise", false,
        contact_resumes},
       {"contact-energy", "kinetic + stored energy of cloth that falls on a ball never grows", "second law",
        true, no_energy_from_nothing},

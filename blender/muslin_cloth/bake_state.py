@@ -196,13 +196,13 @@ def transition(state: State, event) -> Tuple[State, Effects]:
 
 def _bake(state, event):
     if state.busy:
-        return state, (Tell("A bake is in work: cancel it first"),)
+        return state, (Tell("A bake is running: cancel it first"),)
     return _prepare(state, FRESH, event.total)
 
 
 def _bake_from(state, event):
     if state.busy:
-        return state, (Tell("A bake is in work: cancel it first"),)
+        return state, (Tell("A bake is running: cancel it first"),)
     if not 0 <= event.frame <= state.frame:
         return state, (Tell("This frame is not baked: go to one that is, or bake from the start"),)
     if event.total <= event.frame:
@@ -233,7 +233,7 @@ def _cancel(state, _):
 
 def _free(state, _):
     if state.busy:
-        return state, (Tell("A bake is in work: cancel it first"),)
+        return state, (Tell("A bake is running: cancel it first"),)
     return State(), (RemoveBake(),)
 
 
@@ -275,7 +275,7 @@ def _worker_ended(state, event):
     if event.code < 0:
         problem = f"The worker was killed (signal {-event.code})"
         if frame >= 0:
-            problem += f"; Resume goes on behind frame {frame}"
+            problem += f"; Resume continues after frame {frame}"
         return at_rest(state, problem), effects
     return at_rest(state, event.problem or f"muslin ended with code {event.code} and said nothing"), effects
 

@@ -143,7 +143,7 @@ def pin_group_index(obj):
 def require_ready(scene):
     """What can be said before anything is evaluated. Problem otherwise."""
     if not bpy.data.filepath:
-        raise Problem("Save the file first: the bake lies in a folder beside it")
+        raise Problem("Save the file first: the bake is stored in a folder beside it")
     if not cloth_objects(scene):
         raise Problem("No object of this scene is muslin cloth: select a mesh and choose Muslin Cloth under Physics")
     for obj in cloth_objects(scene) + collider_objects(scene):
@@ -159,9 +159,9 @@ def snapshot(obj, depsgraph, topology=False):
     group = pin_group_index(obj) if topology and obj.muslin.role == "CLOTH" else None
     taken = Snapshot(obj, depsgraph, topology, group)
     if not np.isfinite(taken.matrix).all() or not np.isfinite(taken.points).all():
-        raise Problem(f"{obj.name} has a coordinate that is no number: look at its transform, modifiers and drivers")
+        raise Problem(f"{obj.name} has a coordinate that is not a number: check its transform, modifiers and drivers")
     if abs(np.linalg.det(taken.matrix[:3, :3])) < 1e-12 * max(np.abs(taken.matrix[:3, :3]).max(), 1e-30) ** 3:
-        raise Problem(f"{obj.name} is scaled to nothing along an axis: give it a scale that is not 0")
+        raise Problem(f"{obj.name} has a scale of 0 along an axis: give it a scale that is not 0")
     return taken
 
 
@@ -194,7 +194,7 @@ def fields_notices(scene):
     for obj in field_objects(scene):
         field = obj.field
         if field.type not in ("WIND", "TURBULENCE"):
-            notices.append(Notice(INFO, f"Its force field ({field.type.title()}) is ignored: muslin knows Wind and "
+            notices.append(Notice(INFO, f"Its force field ({field.type.title()}) is ignored: muslin supports only Wind and "
                                         "Turbulence", obj.name))
         elif field.falloff_power > 0 or field.use_max_distance or field.use_min_distance:
             notices.append(Notice(INFO, "Its falloff is ignored: the wind is the same everywhere", obj.name))
@@ -316,7 +316,7 @@ class Capture:
     def scene(self):
         scene = bpy.data.scenes.get(self.scene_name)
         if scene is None:
-            raise Problem(f"The scene {self.scene_name} is gone")
+            raise Problem(f"The scene {self.scene_name} was removed")
         return scene
 
     def begin(self):

@@ -44,7 +44,7 @@ class SessionOperator(Operator):
 class MUSLIN_OT_bake(SessionOperator):
     bl_idname = "muslin.bake"
     bl_label = "Bake"
-    bl_description = "Simulate all muslin cloth of this scene from the first frame on, in a process of its own"
+    bl_description = "Simulate all muslin cloth of this scene from the first frame on, in a separate process"
 
     def event(self, context):
         first, last = context.scene.muslin.frames(context.scene)
@@ -54,7 +54,7 @@ class MUSLIN_OT_bake(SessionOperator):
 class MUSLIN_OT_bake_from_current(SessionOperator):
     bl_idname = "muslin.bake_from_current"
     bl_label = "Bake from Current Frame"
-    bl_description = ("Keep the frames up to this one and simulate those behind it anew, with pins, forces and colliders "
+    bl_description = ("Keep the frames up to this one and simulate later ones again, with pins, forces and colliders "
                       "as they now are")
 
     @classmethod
@@ -70,7 +70,7 @@ class MUSLIN_OT_bake_from_current(SessionOperator):
 class MUSLIN_OT_resume(SessionOperator):
     bl_idname = "muslin.resume"
     bl_label = "Resume"
-    bl_description = "Go on where the bake was cut off, with the scene as it was then"
+    bl_description = "Continue an interrupted bake, with the scene as it was then"
 
     def event(self, context):
         return bs.Resume()
@@ -79,7 +79,7 @@ class MUSLIN_OT_resume(SessionOperator):
 class MUSLIN_OT_cancel(SessionOperator):
     bl_idname = "muslin.cancel"
     bl_label = "Cancel"
-    bl_description = "Stop after the step in work; what is baked stays. A second time: at once"
+    bl_description = "Stop after the current step and keep the baked frames. Press again to stop at once"
 
     def event(self, context):
         return bs.Cancel()
@@ -97,7 +97,7 @@ class MUSLIN_OT_free(SessionOperator):
 class MUSLIN_OT_check(Operator):
     bl_idname = "muslin.check"
     bl_label = "Check"
-    bl_description = "Look at meshes and settings, and say what is wrong with them and what will be built"
+    bl_description = "Check meshes and settings; report errors and what will be built"
 
     def start(self, context):
         session = session_of(context.scene)
@@ -142,7 +142,7 @@ class MUSLIN_OT_cloth_add(RoleOperator):
 class MUSLIN_OT_collider_add(RoleOperator):
     bl_idname = "muslin.collider_add"
     bl_label = "Muslin Collider"
-    bl_description = "Let muslin cloth collide with this mesh, standing or animated"
+    bl_description = "Let muslin cloth collide with this mesh, static or animated"
 
     def execute(self, context):
         context.object.muslin.role = "COLLIDER"
@@ -152,7 +152,7 @@ class MUSLIN_OT_collider_add(RoleOperator):
 class MUSLIN_OT_remove(RoleOperator):
     bl_idname = "muslin.remove"
     bl_label = "Remove"
-    bl_description = "This mesh is not muslin's any more; its bake is not played"
+    bl_description = "Remove muslin from this mesh; its bake is no longer played"
 
     def execute(self, context):
         obj = context.object

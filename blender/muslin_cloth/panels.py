@@ -48,7 +48,7 @@ class PHYSICS_PT_muslin(MuslinPanel, Panel):
         layout, scene, obj = self.layout, context.scene, context.object
         width = context.region.width
         if obj.muslin.role == "COLLIDER":
-            paragraph(layout, "Muslin cloth collides with this mesh, standing or animated.", width)
+            paragraph(layout, "Muslin cloth collides with this mesh, static or animated.", width)
             if not scene.muslin.use_contact:
                 paragraph(layout, "Contact is switched off in the settings of the scene.", width, "ERROR")
                 layout.prop(scene.muslin, "use_contact")
@@ -92,7 +92,7 @@ def draw_state(layout, scene, session, state, width):
             text += f" of {first + state.total}"
         box.label(text=text, icon="CHECKMARK")
         if session.folder and bpy.data.filepath and session.folder != own_folder(scene):
-            paragraph(box, f"Plays the bake of another file, in {session.folder.parent.name}. Bake makes one of its own.",
+            paragraph(box, f"Plays the bake of another file, in {session.folder.parent.name}. Bake makes a new one for this file.",
                       width, "INFO")
     elif not state.problem:
         box.label(text="Nothing is baked" if bpy.data.filepath else "Save the file, then bake", icon="INFO")

@@ -21,10 +21,10 @@ class Reader:
         with open(self.path, "rb") as file:
             head = file.read(HEADER.size)
         if len(head) < HEADER.size:
-            raise ValueError(f"{self.path} is no PC2 cache")
+            raise ValueError(f"{self.path} is not a PC2 cache")
         magic, version, points, _, _, samples = HEADER.unpack(head)
         if magic != MAGIC or version != 1 or points < 0 or samples < 0:
-            raise ValueError(f"{self.path} is no PC2 cache")
+            raise ValueError(f"{self.path} is not a PC2 cache")
         return points, samples
 
     def samples(self):

@@ -32,7 +32,7 @@ class MuslinPreferences(bpy.types.AddonPreferences):
     program: StringProperty(
         name="Program", subtype="FILE_PATH", update=changed,
         description="The muslin program; empty: the one beside the add-on, or on the PATH")
-    threads: IntProperty(name="Threads", min=0, description="0: one per core. The result is the same for any number")
+    threads: IntProperty(name="Threads", min=0, description="0: one per core. Results do not depend on the number")
 
     def draw(self, _context):
         layout = self.layout

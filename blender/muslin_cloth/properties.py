@@ -18,17 +18,17 @@ def drop_estimate(props, _context):
 class MuslinObject(bpy.types.PropertyGroup):
     role: EnumProperty(
         name="Role", items=[("NONE", "None", ""), ("CLOTH", "Cloth", "Simulated by muslin"),
-                            ("COLLIDER", "Collider", "Stands or moves in the way of muslin cloth")])
+                            ("COLLIDER", "Collider", "An obstacle for muslin cloth, static or animated")])
     model: EnumProperty(
-        name="Kind", description="What the mesh is made into",
+        name="Kind", description="How the mesh is simulated",
         items=[("SHELL", "Cloth", "The mesh itself is thin cloth"),
-               ("LATTICE", "Solid", "The mesh is filled with voxels: things with a volume or a thickness")])
+               ("LATTICE", "Solid", "The mesh is filled with voxels: for bodies with a volume or a thickness")])
     fabric: StringProperty(
         name="Fabric", default="cotton", description="A material of muslin, or the path of a material file",
         search=suggest_fabrics, search_options={"SUGGESTION"})
     thickness: FloatProperty(
         name="Thickness", subtype="DISTANCE", min=0, soft_max=1, precision=4, update=drop_estimate,
-        description="Of cloth, as contact sees it; of a solid made from an open mesh. 0 takes what muslin suggests: "
+        description="Thickness of cloth in contact, or of a solid made from an open mesh. 0 uses the default: "
                     "0.5 mm, or one voxel width")
     voxel_width: FloatProperty(
         name="Voxel Width", subtype="DISTANCE", min=0, soft_max=10, precision=4,
@@ -43,19 +43,19 @@ class MuslinObject(bpy.types.PropertyGroup):
     use_self_contact: BoolProperty(
         name="Self Contact", default=True, description="Touches itself; takes time where it does")
     use_friction: BoolProperty(
-        name="Own Friction", description="Its surface has a friction of its own, not the one of the scene")
+        name="Own Friction", description="Use a separate friction for this surface instead of the scene's")
     friction: FloatProperty(
         name="Friction", default=0.3, min=0, max=100, soft_max=1,
-        description="Coulomb's coefficient of its surface; between two surfaces it is the geometric mean of theirs")
+        description="Coulomb's coefficient of this surface; a pair of surfaces has the geometric mean of both")
     use_stretch_limit: BoolProperty(
-        name="Limit Stretch", description="The cloth becomes stiff before any part is stretched by more than a factor")
+        name="Limit Stretch", description="The cloth becomes stiff before any part is stretched beyond a limit")
     stretch_limit: FloatProperty(
         name="Stretch Limit", default=1.05, min=1.001, max=10, soft_min=1.01, soft_max=1.5, precision=3, step=1,
-        description="Most that any part may be stretched, over its length at rest: 1.05 is 5 % longer. Keeps weak "
-                    "fabrics from sagging where they are held; less than 1.01 takes long")
+        description="Largest stretch of any part, as length over rest length: 1.05 allows 5 %. Keeps weak "
+                    "fabrics from sagging where they are held; values below 1.01 take long")
     rest_shape: EnumProperty(
-        name="Rest Shape", description="The shape that is free of stress",
-        items=[("START", "At the Start", "As it stands in the first frame"),
+        name="Rest Shape", description="The stress-free shape",
+        items=[("START", "At the Start", "The mesh in the first frame"),
                ("BASE", "Base Mesh", "The mesh without its modifiers and shape keys; only cloth")])
     # Measured for the estimate of voxels, not settings.
     area: FloatProperty(options={"HIDDEN"})
@@ -69,25 +69,25 @@ class MuslinScene(bpy.types.PropertyGroup):
     frame_end: IntProperty(name="End", default=250)
     use_automatic_steps: BoolProperty(
         name="Automatic Steps", default=True,
-        description="As many steps a frame as the motion needs; otherwise a fixed number")
+        description="Adapt the number of steps per frame to the motion; otherwise it is fixed")
     steps_per_frame: IntProperty(
         name="Steps per Frame", default=10, min=1, soft_max=100,
         description="More steps follow fast motion better and damp less")
     air_density: FloatProperty(
-        name="Air Density", default=1.2, min=0, soft_max=10, description="kg/m³; 0 is no air: neither wind nor drag")
+        name="Air Density", default=1.2, min=0, soft_max=10, description="kg/m³; 0 is a vacuum, without wind and drag")
     use_contact: BoolProperty(
-        name="Contact", default=True, description="Cloth touches itself, other cloth and colliders; nothing crosses")
+        name="Contact", default=True, description="Contact of cloth with itself, other cloth and colliders, without crossings")
     effort: EnumProperty(
-        name="Effort", default="NORMAL", description="How accurately steps are solved; nothing crosses in any",
+        name="Effort", default="NORMAL", description="How accurately steps are solved; surfaces do not cross at any effort",
         items=[("DRAFT", "Draft", "To see whether a scene works"),
                ("NORMAL", "Normal", "For pictures"),
                ("EXACT", "Exact", "For measurements: slower by far")])
     friction: FloatProperty(
         name="Friction", default=0.3, min=0, max=100, soft_max=1,
-        description="Coulomb's coefficient of cloth and colliders that have none of their own")
+        description="Coulomb's coefficient of cloth and colliders without Own Friction")
     keep_states: BoolProperty(
         name="Keep States", default=True,
-        description="Keep the state of every frame, so that a bake can go on from any: 96 bytes per vertex and frame")
+        description="Keep the state of every frame, so that a bake can continue from any of them: 96 bytes per vertex and frame")
 
     def steps(self):
         """Steps a frame; None if they are automatic."""

@@ -48,7 +48,7 @@ class Session:
             self.worker = worker.Orphan(run, description.get("pid", 0), log)
             self._began, self._sessions_before = (time.monotonic(), max(frame, 0)), -1
         elif frame < total and worker.run_status(run) == "running":
-            problem = f"The bake was cut off behind frame {frame + description['frame_start']}; Resume goes on"
+            problem = f"The bake was interrupted after frame {frame + description['frame_start']}; Resume continues it"
         elif worker.run_status(run) == "failed":
             problem = problem_line(worker.read_log(log)) or worker.read_run(run).get("reason", "")
         self.feed(bs.Opened(frame, total, alive, problem if frame >= 0 else ""))
@@ -188,7 +188,7 @@ class Session:
     def check(self):
         """Only looks; bakes nothing."""
         if self.state.busy:
-            return "A bake is in work: cancel it first"
+            return "A bake is running: cancel it first"
         failed = self._start_check()
         if failed is None:
             self._checked_only = True

@@ -45,7 +45,7 @@ class InputError(Error, ValueError):
 
 
 class SolverError(Error, ArithmeticError):
-    """The solver could not go on; the simulation holds the last good step."""
+    """The solver failed; the simulation has the state of the last good step."""
 
     exit_code = 4
 

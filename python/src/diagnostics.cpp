@@ -46,19 +46,18 @@ Columns columns_of(const std::vector<Diagnostics>& rows) {
 }
 
 void bind_diagnostics(nb::module_& m) {
-  nb::class_<Diagnostics>(m, "Diagnostics", "Numbers of a frame, over all bodies.")
+  nb::class_<Diagnostics>(m, "Diagnostics", "Diagnostics of a frame, over all bodies.")
       .def_ro("frame", &Diagnostics::frame)
       .def_ro("time", &Diagnostics::time, "[s]")
       .def_ro("kinetic", &Diagnostics::kinetic, "[J]")
       .def_ro("elastic", &Diagnostics::elastic, "Stored in the material [J].")
       .def_ro("potential", &Diagnostics::potential, "Stored in fields such as gravity [J].")
-      .def_ro("work", &Diagnostics::work, "Done from outside since the start [J].")
+      .def_ro("work", &Diagnostics::work, "External work since the start [J].")
       .def_ro("dissipated", &Diagnostics::dissipated, "Lost since the start [J].")
-      .def_ro(
-          "unbalanced", &Diagnostics::unbalanced,
-          "Work of what the solver left out of balance since the start [J]: by that much balance changed.")
+      .def_ro("unbalanced", &Diagnostics::unbalanced,
+              "Work of the solver's residuals since the start [J]: the balance has changed by this amount.")
       .def_prop_ro("balance", &Diagnostics::balance,
-                   "kinetic + elastic + potential - work + dissipated [J]: stays what it was.")
+                   "kinetic + elastic + potential - work + dissipated [J]: constant.")
       .def_prop_ro(
           "momentum", [](const Diagnostics& row) { return to_array(row.momentum); }, nb::rv_policy::automatic,
           "(3,) [kg·m/s]")
@@ -71,16 +70,16 @@ void bind_diagnostics(nb::module_& m) {
           "Smallest gap in contact [m]; infinity without contact, not above 0 while a tangled start has not "
           "parted.")
       .def_ro("held_back", &Diagnostics::held_back,
-              "Vertices moved along keyframes that something in their way holds back.")
+              "Vertices moved along keyframes that an obstacle holds back.")
       .def_ro("steps", &Diagnostics::steps, "Of this frame.")
       .def_ro("converged_steps", &Diagnostics::converged_steps,
               "Steps of this frame that ended within their tolerance.")
       .def_ro("error", &Diagnostics::error,
-              "Largest estimate of what a step of this frame left unsolved, as motion [m].")
+              "Largest estimated error of a step of this frame, as a displacement [m].")
       .def_ro("crossings", &Diagnostics::crossings,
-              "Pairs of triangles that cross, in a start that was allowed to be tangled.")
+              "Pairs of triangles that still cross after a tangled start.")
       .def_ro("penetration", &Diagnostics::penetration,
-              "How deep the deepest of these, or what is inside a collider, is [m].")
+              "Largest depth of a crossing or inside a collider [m].")
       .def_ro("wall_ms", &Diagnostics::wall_ms, "Time that this frame took.")
       .def("__repr__", [](const Diagnostics& row) {
         return fmt::format(

@@ -64,7 +64,8 @@ void bind_field(nb::module_& m) {
           nb::sig("def inside(self, points: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.bool_]"),
           "Whether each point (n, 3) is inside.")
       .def_prop_ro("watertight", &SignedDistance::watertight,
-                   "Whether the sign changes at the surface only: every edge is run as often either way.")
+                   "Whether the sign changes only at the surface: each edge is traversed equally often in "
+                   "both directions.")
       .def_prop_ro(
           "bounds", [](const SignedDistance& self) { return to_array(self.bounds()); },
           nb::rv_policy::automatic, "Lowest and highest corner [m], shape (2, 3).");
@@ -75,7 +76,7 @@ void bind_field(nb::module_& m) {
           "Of sample 0 [m].")
       .def_prop_ro(
           "width", [](const DistanceField& f) { return f.grid.width; }, "Between samples [m].")
-      .def_ro("band", &DistanceField::band, "Samples farther than this hold it, with their sign [m].")
+      .def_ro("band", &DistanceField::band, "Samples farther away than this are set to ± this value [m].")
       .def_prop_ro(
           "values",
           [](nb::pointer_and_handle<DistanceField> self) {

@@ -173,7 +173,7 @@ void bind_lattice(nb::module_& m) {
       "bracing: \"kuhn\", along the edges of six tetrahedra a voxel, or \"full\", along all diagonals.");
   m.def(
       "build_tetrahedra", [](const Lattice& lattice) { return taken(build_tetrahedra(lattice)); },
-      "lattice"_a, "(6·C, 4) six positively oriented tetrahedra a voxel; faces of neighbours match.");
+      "lattice"_a, "(6·C, 4) six positively oriented tetrahedra per voxel; faces of neighbours match.");
 
   using SelfEmbedding = nb::pointer_and_handle<Embedding>;
   nb::class_<Embedding>(m, "Embedding", "Points as weighted sums of vertices: the linear map x = J q.")

@@ -30,7 +30,7 @@ void bind_material(nb::module_& m) {
   nb::class_<Material>(m, "Material", "What a body is made of.")
       .def_ro("name", &Material::name)
       .def_ro("description", &Material::description)
-      .def_ro("source", &Material::source, "Where the numbers are from.")
+      .def_ro("source", &Material::source, "Source of the numbers.")
       .def_prop_ro(
           "lattice", [](const Material& material) { return as_dict(lattice_numbers(material)); },
           "Numbers of a lattice by the keys of the scene file, in SI units; empty if it has none.")

@@ -141,14 +141,15 @@ Mesh read(const FilePath& given) {
 }
 
 void bind_report(nb::module_& m) {
-  nb::class_<MeshReport>(m, "MeshReport", "What kind of mesh it is and what is wrong with it.")
+  nb::class_<MeshReport>(m, "MeshReport", "The kind of a mesh and its defects.")
       .def_ro("vertices", &MeshReport::vertices)
       .def_ro("faces", &MeshReport::faces)
       .def_ro("triangles", &MeshReport::triangles)
       .def_ro("components", &MeshReport::components, "Parts that share no vertex.")
       .def_ro("open_edges", &MeshReport::open_edges, "Edges of one face only.")
       .def_ro("non_manifold_edges", &MeshReport::non_manifold_edges, "Edges of three faces or more.")
-      .def_ro("flipped_edges", &MeshReport::flipped_edges, "Edges that two faces run in the same direction.")
+      .def_ro("flipped_edges", &MeshReport::flipped_edges,
+              "Edges that two faces traverse in the same direction.")
       .def_ro("degenerate_faces", &MeshReport::degenerate_faces, "Faces without area.")
       .def_ro("duplicate_faces", &MeshReport::duplicate_faces)
       .def_ro("unused_vertices", &MeshReport::unused_vertices)
@@ -160,7 +161,7 @@ void bind_report(nb::module_& m) {
       .def_ro("closed", &MeshReport::closed)
       .def_ro("flat_axis", &MeshReport::flat_axis,
               "0, 1, 2 if all lies in a plane x, y or z = const, else -1.")
-      .def_ro("warnings", &MeshReport::warnings, "Sentences, each with what to do.");
+      .def_ro("warnings", &MeshReport::warnings, "Sentences, each with a remedy.");
 }
 
 }  // namespace
@@ -239,13 +240,14 @@ void bind_mesh(nb::module_& m) {
           "The polygons cut into triangles: vertex indices, shape (T, 3).")
       .def("moved", &moved, "positions"_a, "The same mesh with its vertices at other positions (V, 3) [m].")
       .def("report", &inspect, nb::call_guard<nb::gil_scoped_release>(),
-           "What kind of mesh it is, what is wrong.")
+           "Returns the kind of the mesh and its defects.")
       .def("__repr__", [](const Mesh& mesh) {
         return fmt::format("<muslin.Mesh {}{} vertices, {} faces>", mesh.name.empty() ? "" : mesh.name + ": ",
                            mesh.vertex_count(), mesh.face_count());
       });
   m.def("read_mesh", &read, "path"_a,
-        "Reads .obj, .ply, .stl, .gltf, .glb, .dae or .fbx. What the reader had to change is a UserWarning.");
+        "Reads .obj, .ply, .stl, .gltf, .glb, .dae or .fbx. Changes made by the reader are reported as a "
+        "UserWarning.");
   m.def(
       "write_mesh",
       [](const FilePath& path, const Mesh& mesh, const std::optional<ArrayLike>& positions) {

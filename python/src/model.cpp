@@ -51,7 +51,7 @@ void bind_body(nb::module_& m) {
           "Of [[collider]], not of [[body]].")
       .def_prop_ro(
           "prescribed", [](const Component& b) { return b.is_prescribed(); },
-          "Moves as it is told, not as it is pushed; it has no mass.")
+          "True for scripted motion: forces do not move it, and it has no mass.")
       .def_ro("sheet", &Component::sheet, "Thin: a shell, or a mesh that was given a thickness.")
       .def_prop_ro(
           "thickness", [](const Component& b) { return as_lattice(b) ? as_lattice(b)->thickness : 0; },
@@ -98,8 +98,7 @@ void bind_model(nb::module_& m) {
       .def_ro("end", &Pin::until, "[s]");
 
   using Self = nb::pointer_and_handle<Model>;
-  nb::class_<Model>(m, "Model",
-                    "All that does not change during a run. Arrays are views of it, and read-only.")
+  nb::class_<Model>(m, "Model", "All data that is constant during a run. Its arrays are read-only views.")
       .def_prop_ro(
           "scene", [](const Model& model) -> const Scene& { return model.scene; },
           nb::rv_policy::reference_internal)
@@ -116,9 +115,9 @@ void bind_model(nb::module_& m) {
           "(V, 3) of all bodies, one after the other [m].")
       .def_prop_ro(
           "masses", [](Self self) { return view(self.p->masses, self.h); },
-          "(V,) [kg]; 0 of what moves as it is told.")
+          "(V,) [kg]; 0 for prescribed vertices.")
       .def_prop_ro("vertex_count", &Model::vertex_count)
-      .def_ro("warnings", &Model::warnings, "What the user should know before a run.")
+      .def_ro("warnings", &Model::warnings, "Warnings for the user before a run.")
       .def(
           "crossings",
           [](const Model& model, const std::optional<ArrayLike>& positions) {

@@ -26,7 +26,7 @@ NB_MODULE(_muslin, m) {
       "Limits all parallel work of the process to `count` threads; 0 means one per core. Results have the "
       "same\n"
       "bits for any count.");
-  m.def("thread_count", &muslin::thread_count, "The number of threads that work is spread over.");
+  m.def("thread_count", &muslin::thread_count, "The number of threads in use.");
   bind_mesh(m);
   bind_field(m);
   bind_lattice(m);

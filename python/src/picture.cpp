@@ -77,7 +77,7 @@ int frame_of(const RunPictures& pictures, int frame) {
 }  // namespace
 
 void bind_picture(nb::module_& m) {
-  nb::class_<RunPictures>(m, "RunPictures", "Draws frames of one run, all from one place.")
+  nb::class_<RunPictures>(m, "RunPictures", "Draws frames of a run, all from one camera position.")
       .def(
           "__init__",
           [](RunPictures* self, const FilePath& directory, const std::string& body,

@@ -57,7 +57,7 @@ class Keeper {
 /// −1: the last.
 int first_frame(std::optional<int> resume_from) {
   if (resume_from && *resume_from < 0)
-    throw Error(ErrorKind::usage, "resume_from is below 0", "give the frame to go on from");
+    throw Error(ErrorKind::usage, "resume_from is below 0", "give the frame to resume from");
   return resume_from.value_or(-1);
 }
 
@@ -205,7 +205,7 @@ void bind_writer(nb::module_& m) {
       "        for frame in simulation:\n"
       "            writer.write_frame()\n\n"
       "The run is finished if it reached its last frame, interrupted or failed if the block\n"
-      "was left earlier; then `resume=True` goes on from its last checkpoint.")
+      "was left earlier; then `resume=True` continues from its last checkpoint.")
       .def(
           nb::init<const FilePath&, SimulationObject&, std::optional<int>, bool, std::optional<int>, bool>(),
           "directory"_a, "simulation"_a, nb::kw_only(), "frames"_a = nb::none(), "resume"_a = false,
@@ -240,24 +240,25 @@ void bind_run(nb::module_& m) {
       .def_ro("total", &RunProgress::total, "The last frame of the run.")
       .def_ro("fraction", &RunProgress::fraction, "Of the whole run, or of the stage while building.")
       .def_ro("seconds_left", &RunProgress::seconds_left, "An estimate; NaN before there is one.")
-      .def_ro("stage", &RunProgress::stage, "What is being done.");
-  nb::class_<RunResult>(m, "RunResult", "What a run came to.")
+      .def_ro("stage", &RunProgress::stage, "The current stage.");
+  nb::class_<RunResult>(m, "RunResult", "The result of a run.")
       .def_ro("first_frame", &RunResult::first_frame, "0, or the frame that was resumed from.")
       .def_ro("last_frame", &RunResult::last_frame)
       .def_ro("changes", &RunResult::changes, "Settings changed since the run that was resumed.")
       .def_ro("warnings", &RunResult::warnings, "Of the model.");
-  m.def("run", &run, "scene"_a, "directory"_a, nb::kw_only(), "frames"_a = nb::none(), "resume"_a = false,
-        "resume_from"_a = nb::none(), "keep_states"_a = false, "allow_tangled"_a = false,
-        "progress"_a = nb::none(), "cancel"_a = nb::none(),
-        "Runs a scene and writes its run directory, as `muslin run` does, to the same bytes. frames: the "
-        "last frame,\n"
-        "else the scene's. resume: go on from the last checkpoint, if there is one; resume_from: from that "
-        "of this\n"
-        "frame, which needs a run with keep_states. allow_tangled: start although surfaces cross, as "
-        "Simulation "
-        "has it; a\nrun that is resumed remembers. After Interrupted, KeyboardInterrupt, or an exception of "
-        "a\n"
-        "callback the run can be resumed.");
+  m.def(
+      "run", &run, "scene"_a, "directory"_a, nb::kw_only(), "frames"_a = nb::none(), "resume"_a = false,
+      "resume_from"_a = nb::none(), "keep_states"_a = false, "allow_tangled"_a = false,
+      "progress"_a = nb::none(), "cancel"_a = nb::none(),
+      "Runs a scene and writes its run directory, as `muslin run` does, to the same bytes. frames: the "
+      "last frame,\n"
+      "else the scene's. resume: continue from the last checkpoint, if there is one; resume_from: from that "
+      "of this\n"
+      "frame, which needs a run with keep_states. allow_tangled: start although surfaces cross, as "
+      "Simulation "
+      "has it; a\nrun that is resumed remembers. After Interrupted, KeyboardInterrupt, or an exception of "
+      "a\n"
+      "callback the run can be resumed.");
   bind_writer(m);
 
   using Name = std::optional<std::string>;

@@ -40,14 +40,14 @@ JsonObject from_json(const std::string& text) {
 }
 
 void bind_scene(nb::module_& m) {
-  nb::class_<Scene>(m, "Scene", "What a scene file says, checked and with defaults filled in.")
+  nb::class_<Scene>(m, "Scene", "The settings of a scene, checked and with defaults filled in.")
       .def_ro("title", &Scene::title)
       .def_ro("file", &Scene::file, "Where it was read from; its paths are relative to that.")
       .def_ro("text", &Scene::text, "The file as it was read.")
       .def_prop_ro(
           "resolved", [](const Scene& s) { return from_json(s.resolved); },
           "Every setting with its value, defaults included, by the words of the scene file.")
-      .def_ro("warnings", &Scene::warnings, "What is legal but probably not meant.")
+      .def_ro("warnings", &Scene::warnings, "Settings that are legal but probably not intended.")
       .def_prop_ro(
           "duration", [](const Scene& s) { return s.time.duration; }, "[s]")
       .def_prop_ro(

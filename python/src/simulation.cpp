@@ -150,12 +150,13 @@ void bind_simulation(nb::module_& m) {
             self.advance(progress_of(progress, cancel));
           },
           nb::kw_only(), "progress"_a = nb::none(), "cancel"_a = nb::none(),
-          "To the end of the next frame. progress(fraction, stage) and cancel() are called before each step; "
-          "after\n"
-          "Interrupted, KeyboardInterrupt, or an exception of a callback the next call goes on from the last "
-          "whole\n"
-          "step.")
-      .def("step", &Self::step, "One step of the solver; the last of a frame finishes it.")
+          "Advances to the end of the next frame. progress(fraction, stage) and cancel() are called before "
+          "each step.\n"
+          "After Interrupted, KeyboardInterrupt, or an exception of a callback the next call continues from "
+          "the "
+          "last\n"
+          "complete step.")
+      .def("step", &Self::step, "Makes one time step; the last one of a frame finishes the frame.")
       .def(
           "cut",
           [](Self& self, const std::vector<std::array<int, 2>>& edges,
@@ -163,10 +164,14 @@ void bind_simulation(nb::module_& m) {
             self.cut(find_body(*self.model(), body).name, edges);
           },
           "edges"_a, nb::kw_only(), "body"_a = nb::none(),
-          "Opens edges of a shell, pairs of vertices of its mesh from 0, and goes on with what became of "
-          "it.\n"
-          "Faces that no other edge joins part; new vertices come last. Motion stays, the change of energy\n"
-          "counts as work, and `model` is another one. Forces in Python are dropped: add them again.")
+          "Cuts a shell open along edges, given as pairs of vertices of its mesh counted from 0, and "
+          "continues "
+          "with\n"
+          "the changed shell. Faces that no other edge joins are separated; new vertices come last. Vertices "
+          "keep\n"
+          "their motion, the change of energy counts as work, and `model` is a new model. Forces in Python "
+          "are\n"
+          "dropped: add them again.")
       .def(
           "add_force",
           [](Self& self, const Force& force, const std::string& name,
@@ -174,27 +179,28 @@ void bind_simulation(nb::module_& m) {
           "force"_a, nb::kw_only(), "name"_a = "force", "body"_a = nb::none(),
           "force(x, v, t) returns the force on each vertex, (V, 3) [N], or None for nothing: x and v, (V, 3) "
           "[m] and\n"
-          "[m/s], and t [s] are those at the beginning of each step, and the force stays what it was during "
-          "it. So\n"
-          "it is explicit: a force that is stiff against the step is unstable, a drag -c v needs steps below "
+          "[m/s], and t [s] are those at the beginning of each step, and the force is constant during it. So "
+          "it\n"
+          "is explicit: a force that is stiff relative to the step is unstable; a drag -c v needs steps "
+          "below "
           "2 m/c.\n"
-          "With `body` it sees and acts on the vertices of that body only. Forces are no part of "
-          "checkpoints: add\n"
-          "them again before restore().")
+          "With `body` it receives and acts on the vertices of that body only. Forces are not part of "
+          "checkpoints:\n"
+          "add them again before restore().")
       .def(
           "points",
           [](const Self& self, const std::optional<std::string>& body, const std::string& surface) {
             return carried(self, body, surface, self.simulation().state().positions);
           },
           "body"_a = nb::none(), nb::kw_only(), "surface"_a = "skin",
-          "Where the vertices of a body's mesh (\"skin\") or \"contour\" are now, (n, 3) [m].")
+          "The current positions of the vertices of a body's mesh (\"skin\") or \"contour\", (n, 3) [m].")
       .def(
           "probes", [](const Self& self) { return at_probes(self, self.simulation().state().positions); },
-          "Where each probe is, (3,) [m].")
+          "The position of each probe, (3,) [m].")
       .def(
           "probe_velocities",
           [](const Self& self) { return at_probes(self, self.simulation().state().velocities); },
-          "How fast each probe moves, (3,) [m/s].")
+          "The velocity of each probe, (3,) [m/s].")
       .def(
           "costs", [](const Self& self) { return costs_of(self.simulation().costs()); },
           "Where the time of contact went since the simulation was made: seconds of \"search\", \"limit\", "

@@ -272,7 +272,7 @@ std::vector<CheckpointFile> RunWriter::Impl::checkpoints_to_try() const {
     if (file.steps == 0 && frames.size() < 60)
       frames += (frames.empty() ? "" : ", ") + std::to_string(file.frame);
   throw Error(ErrorKind::input, {directory.string()},
-              fmt::format("there is no state of frame {} to go on from", history.resume_from),
+              fmt::format("there is no state of frame {} to resume from", history.resume_from),
               frames.empty()
                   ? "restart the run"
                   : fmt::format("there are those of frames {}; a run with --keep-states keeps all", frames));

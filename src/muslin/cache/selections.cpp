@@ -106,7 +106,7 @@ Selections read_selections(const std::filesystem::path& path, const std::vector<
     }
   } catch (const std::exception&) {
     throw Error(ErrorKind::input, {path.string()}, "the list of held vertices is damaged",
-                "remove the file to go on without it, or run the scene again");
+                "remove the file to continue without it, or run the scene again");
   }
   return selections;
 }

@@ -168,7 +168,7 @@ void Simulation::Impl::fail(const StepReport& report) const {
   }
   const bool explicit_steps = model->scene.solver.integrator == Integrator::symplectic_euler;
   throw Error(ErrorKind::solver,
-              fmt::format("the solver could not go on in frame {} after {:.6g} s, even with steps halved {} "
+              fmt::format("the solver failed in frame {} after {:.6g} s, even with steps halved {} "
                           "times{}: {}",
                           state.frame + 1, state.motion.time, max_halvings, place, report.failure),
               fmt::format("{}{}",
