@@ -134,7 +134,7 @@ double downhill(const Scratch& scratch, int frame) {
   return sum / static_cast<double>(velocities.size());
 }
 
-TEST(ColliderRun, GoesOnWithTheFrictionOfBodyAndColliderThatItIsGiven) {
+TEST(ColliderRun, ResumesWithChangedFrictionOfBodyAndCollider) {
   const Scratch scratch;
   write_slope(scratch);
   const auto go_on = [&](int frames, const std::vector<std::string>& settings) {
@@ -227,7 +227,7 @@ TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
   EXPECT_EQ(RunReader(scratch / "run").diagnostics().size(), 3u);
 }
 
-TEST(ColliderRun, SaysThatSomethingWasHeldBack) {
+TEST(ColliderRun, ReportsHeldBackVertices) {
   const Scratch scratch;
   write_scene(scratch);
   // A floor that rises into a plane above: the cloth between them stops it, until it sinks again.

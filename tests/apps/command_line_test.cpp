@@ -35,7 +35,7 @@ TEST(CommandLine, HelpAndVersionSucceed) {
   }
 }
 
-TEST(CommandLine, UsageErrorsAreCode2AndPointTheWay) {
+TEST(CommandLine, UsageErrorsExitWith2AndAdvice) {
   Scratch scratch;
   const auto usage = [&](const std::vector<std::string>& words, const std::string& part) {
     SCOPED_TRACE(testing::PrintToString(words));
@@ -58,7 +58,7 @@ TEST(CommandLine, UsageErrorsAreCode2AndPointTheWay) {
   expect_refusal(run(scratch, {"materials", "coton"}), 3, "`cotton`");
 }
 
-TEST(CommandLine, InputErrorsAreCode3AndTellThePlace) {
+TEST(CommandLine, InputErrorsExitWith3AndThePlace) {
   Scratch scratch;
   const std::string scene = scratch / "scene.toml";
   const std::string mesh = (test::scenes / "meshes" / "flag.obj").string();
@@ -82,7 +82,7 @@ TEST(CommandLine, InputErrorsAreCode3AndTellThePlace) {
   input(test::bytes_of(scene), "thesis_flag");
 }
 
-TEST(CommandLine, FileErrorsAreCode5) {
+TEST(CommandLine, FileErrorsExitWith5) {
   Scratch scratch;
   ::mkfifo((scratch / "pipe.toml").c_str(), 0600);
   std::filesystem::create_directory(scratch / "folder.toml");
@@ -99,7 +99,7 @@ TEST(CommandLine, FileErrorsAreCode5) {
   expect_refusal(run(scratch, {"check", scratch / "large.toml"}), 5, "larger than 64 MiB");
 }
 
-TEST(CommandLine, StandardOutputThatCannotBeWrittenIsCode5) {
+TEST(CommandLine, UnwritableStandardOutputExitsWith5) {
   Scratch scratch;
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"check", two_corners}, {"materials"}, {"check", "--json", two_corners}}) {
@@ -114,7 +114,7 @@ TEST(CommandLine, StandardOutputThatCannotBeWrittenIsCode5) {
   }
 }
 
-TEST(CommandLine, CheckTellsWhatTheThesisFlagConsistsOf) {
+TEST(CommandLine, CheckPrintsTheCountsOfTheThesisFlag) {
   Scratch scratch;
   const Outcome json = run(scratch, {"check", "--json", two_corners});
   ASSERT_EQ(json.code, 0) << json.err;
@@ -133,7 +133,7 @@ TEST(CommandLine, CheckTellsWhatTheThesisFlagConsistsOf) {
   EXPECT_THAT(text.out, HasSubstr("600 kg"));
 }
 
-TEST(CommandLine, CheckReportsOnABareMesh) {
+TEST(CommandLine, CheckReportsOnAMesh) {
   Scratch scratch;
   const std::string mesh = (test::scenes / "meshes" / "flag_box.obj").string();
   const Outcome json = run(scratch, {"check", "--json", mesh});
@@ -146,7 +146,7 @@ TEST(CommandLine, CheckReportsOnABareMesh) {
   EXPECT_THAT(run(scratch, {"check", mesh}).out, HasSubstr("closed, volume 60"));
 }
 
-TEST(CommandLine, VerifyRunsOneTestOrAllThatBeginWithAWord) {
+TEST(CommandLine, VerifyRunsOneTestOrAllWithAPrefix) {
   Scratch scratch;
   for (const char* name : {"free-fall", "free"}) {
     const Outcome outcome = run(scratch, {"verify", name});
@@ -156,7 +156,7 @@ TEST(CommandLine, VerifyRunsOneTestOrAllThatBeginWithAWord) {
   expect_refusal(run(scratch, {"verify", "fre"}), 2, "there is no test `fre`");
 }
 
-TEST(CommandLine, OverridesReachTheSceneAndFaultsInThemAreTold) {
+TEST(CommandLine, OverridesReachTheSceneAndMistakesAreReported) {
   Scratch scratch;
   const Outcome good = run(scratch, {"check", "--json", two_corners, "--set", "time.duration=1", "--set",
                                      "body.flag.voxel_width=0.5", "--set", "body.0.thickness=1"});

@@ -46,7 +46,7 @@ TEST(Field, PrintsFigure52OfTheThesis) {
   }
 }
 
-TEST(Field, RefusesWhatCannotBeSampled) {
+TEST(Field, RefusesFieldsThatCannotBeSampled) {
   Scratch scratch;
   const std::string mesh = (test::scenes / "meshes/thin_flag.obj").string();
   EXPECT_EQ(run(scratch, {"field", mesh, "--voxel-width", "1e-12"}).code, 2);

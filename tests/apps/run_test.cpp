@@ -59,7 +59,7 @@ std::vector<std::string> with(std::vector<std::string> words, const std::vector<
   return words;
 }
 
-TEST(Program, FramesAreAsAskedAndASecondRunReplacesTheFirst) {
+TEST(Program, WritesTheRequestedFramesAndReplacesAnEarlierRun) {
   Scratch scratch;
   ASSERT_EQ(run(scratch, run_words(scratch / "run", 6)).code, 0);
   EXPECT_EQ(summary(scratch / "run")["status"], "finished");
@@ -71,7 +71,7 @@ TEST(Program, FramesAreAsAskedAndASecondRunReplacesTheFirst) {
   EXPECT_EQ(fs::file_size(scratch / "none/flag.lattice.pc2"), 32u + 154 * 12);
 }
 
-TEST(Program, ForeignDirectoriesAreLeftAlone) {
+TEST(Program, ForeignDirectoriesAreUnchanged) {
   Scratch scratch;
   fs::create_directory(scratch / "photos");
   test::write_bytes(scratch / "photos/cat.png", "meow");
@@ -86,7 +86,7 @@ TEST(Program, ForeignDirectoriesAreLeftAlone) {
   EXPECT_EQ(bytes_of(scratch / "run/notes.txt"), "mine");
 }
 
-TEST(Program, KilledAtRandomMomentsItResumesToTheSameBytes) {
+TEST(Program, RunKilledAtRandomMomentsResumesToTheSameBytes) {
   Scratch scratch;
   const int frames = 40;
   ASSERT_EQ(run(scratch, run_words(scratch / "straight", frames)).code, 0);
@@ -106,7 +106,7 @@ TEST(Program, KilledAtRandomMomentsItResumesToTheSameBytes) {
   EXPECT_EQ(summary(scratch / "killed")["status"], "finished");
 }
 
-TEST(Program, CtrlCIsCode130AndResumable) {
+TEST(Program, CtrlCExitsWith130AndIsResumable) {
   Scratch scratch;  // a run long enough that the signal comes before its end
   ASSERT_EQ(run(scratch, run_words(scratch / "straight", 4000)).code, 0);
   for (const int signal : {SIGINT, SIGTERM}) {
@@ -141,7 +141,7 @@ TEST(Program, ThreadsDoNotChangeABit) {
   }
 }
 
-TEST(Program, AFullDiskIsCode5AndTheRunGoesOnLater) {
+TEST(Program, FullDiskExitsWith5AndTheRunIsResumable) {
   Scratch scratch;
   ASSERT_EQ(run(scratch, run_words(scratch / "straight", 40)).code, 0);
   Process::Streams limited;
@@ -161,7 +161,7 @@ TEST(Program, AFullDiskIsCode5AndTheRunGoesOnLater) {
   expect_same_run(scratch / "straight", scratch / "run");
 }
 
-TEST(Program, ADirectoryThatCannotBeWrittenIsCode5) {
+TEST(Program, UnwritableDirectoryExitsWith5) {
   Scratch scratch;
   for (const std::string& directory :
        {std::string("/proc/muslin"), two_corners, two_corners + "/below", std::string("/dev/null/x"),
@@ -172,7 +172,7 @@ TEST(Program, ADirectoryThatCannotBeWrittenIsCode5) {
   }
 }
 
-TEST(Program, ASolverThatCannotGoOnIsCode4WithTheFrameAndASavedState) {
+TEST(Program, SolverFailureExitsWith4WithTheFrameAndASavedState) {
   Scratch scratch;
   const Outcome outcome = run(scratch, with(run_words(scratch / "run", 48),
                                             {"--set", "solver.integrator=symplectic_euler", "--set",

@@ -92,7 +92,7 @@ TEST(ShellRun, IsExportedAndBuilt) {
   EXPECT_LT(points[62].y(), -0.001F);
 }
 
-TEST(ShellRun, AMeshThatIsNotWeldedIsToldApartFromCloths) {
+TEST(ShellRun, UnweldedMeshesAreReported) {
   const Scratch scratch;
   test::write_bytes(scratch / "torn.obj",
                     "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 4 5 6\n");

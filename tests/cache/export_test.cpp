@@ -266,7 +266,7 @@ TEST_F(Export, VtuSeriesShowsTheLattice) {
   EXPECT_EQ(number_at<std::int64_t>(corners, 24), voxel[2]);
 }
 
-TEST_F(Export, RefusesWhatItCannotWrite) {
+TEST_F(Export, RefusesUnsupportedFormats) {
   const auto kind_of = [&](const fs::path& file, const ExportOptions& options) {
     try {
       export_run(*run, file, options);

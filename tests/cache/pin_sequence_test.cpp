@@ -66,7 +66,7 @@ RunOptions options(const std::filesystem::path& directory) {
   return options;
 }
 
-TEST(PinSequence, HeldVerticesOfAShellAreWhereTheSequenceSays) {
+TEST(PinSequence, HeldVerticesOfAShellFollowTheSequence) {
   Scratch scratch;
   write_square(scratch);
   write_sequence(scratch / "held.pc2");
@@ -115,7 +115,7 @@ TEST(PinSequence, LatticeVerticesFollowTheNearestVertexOfTheGroup) {
   }
 }
 
-TEST(PinSequence, RefusesWhatDoesNotFit) {
+TEST(PinSequence, RefusesSequencesOfAnotherSize) {
   Scratch scratch;
   write_square(scratch);
   const std::string shell = scene_text("model = \"shell\"\nmaterial = \"cotton\"");

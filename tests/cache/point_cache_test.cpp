@@ -39,7 +39,7 @@ TEST(PointCache, Pc2HasTheBytesOfTheFormat) {
   EXPECT_EQ(last, 9.0f);
 }
 
-TEST(PointCache, Pc2CountsOnlyWhatIsThereAtEveryMoment) {
+TEST(PointCache, Pc2HeaderNeverCountsUnwrittenSamples) {
   Scratch scratch;
   Pc2Writer writer(scratch / "a.pc2", 2, OutputFile::Mode::replace);
   EXPECT_EQ(Pc2Reader(scratch / "a.pc2").samples(), 0);
@@ -51,7 +51,7 @@ TEST(PointCache, Pc2CountsOnlyWhatIsThereAtEveryMoment) {
   EXPECT_EQ(Pc2Reader(scratch / "a.pc2").read(0)[1], Vec3f(-0.5f, 0, 1e-3f));
 }
 
-TEST(PointCache, Pc2ThatWasCutOffIsReadAndMended) {
+TEST(PointCache, TruncatedPc2IsReadAndRepaired) {
   Scratch scratch;
   {
     Pc2Writer writer(scratch / "a.pc2", 2, OutputFile::Mode::replace);
@@ -70,7 +70,7 @@ TEST(PointCache, Pc2ThatWasCutOffIsReadAndMended) {
   EXPECT_THROW(Pc2Writer(scratch / "a.pc2", 3, OutputFile::Mode::resume, 1), Error);
 }
 
-TEST(PointCache, RefusesWhatIsNoPointCache) {
+TEST(PointCache, RefusesFilesThatAreNotPointCaches) {
   Scratch scratch;
   test::write_bytes(scratch / "text.pc2", std::string(100, 'x'));
   test::write_bytes(scratch / "short.pc2", "POINT");

@@ -87,7 +87,7 @@ void expect_error(ErrorKind kind, const std::string& words, const Body& body) {
   }
 }
 
-TEST(RunQuality, NamesFramesAsARangeWhereTheyFollow) {
+TEST(RunQuality, NamesConsecutiveFramesAsRanges) {
   EXPECT_EQ(describe_frames({3}), "frame 3");
   EXPECT_EQ(describe_frames({12, 13, 14, 15, 20}), "frames 12 to 15 and 20");
   EXPECT_EQ(describe_frames({1, 3, 4, 9}), "frames 1, 3 to 4 and 9");
@@ -96,7 +96,7 @@ TEST(RunQuality, NamesFramesAsARangeWhereTheyFollow) {
   EXPECT_EQ(describe_frames(odd), "frames 1, 3, 5, 7, 9, 11, 13, 15 and 12 more");
 }
 
-TEST(RunQuality, WarnsOfWhatMissedWasHeldBackOrCrosses) {
+TEST(RunQuality, WarnsOfMissedTolerancesHeldBackVerticesAndCrossings) {
   RunQuality quality;
   Diagnostics row;
   row.steps = row.converged_steps = 200;
@@ -116,7 +116,7 @@ TEST(RunQuality, WarnsOfWhatMissedWasHeldBackOrCrosses) {
                                    HasSubstr("2 pairs of triangles still cross")));
 }
 
-TEST(RunQuality, WarnsOfLimitsOfStretchThatWereMissed) {
+TEST(RunQuality, WarnsOfExceededStretchLimits) {
   RunQuality quality;
   quality.add(LimitedStretch{0, 1, 1.05, "hem"});
   quality.add(LimitedStretch{1, 1.059, 1.05, "hem"});
@@ -138,7 +138,7 @@ TEST(RunQuality, WarnsOfLimitsOfStretchThatWereMissed) {
               testing::ElementsAre(HasSubstr("it starts beyond the limit: check `rest_mesh`")));
 }
 
-TEST(RunDirectory, GoesOnWithATableOfAnEarlierVersion) {
+TEST(RunDirectory, ResumesWithATableOfAnEarlierVersion) {
   Scratch scratch;
   run_to(scratch / "run", 3, false);
   const std::string table = bytes_of(scratch / "run/diagnostics.csv");
@@ -164,7 +164,7 @@ TEST(RunDirectory, GoesOnWithATableOfAnEarlierVersion) {
   EXPECT_EQ(run["convergence"]["steps"], more[4].steps + more[5].steps);
 }
 
-TEST(RunDirectory, HoldsWhatTheDesignNames) {
+TEST(RunDirectory, HasTheDocumentedFiles) {
   Scratch scratch;
   run_to(scratch / "run", 5, false);
   for (const char* name : {"run.json", "scene.toml", "stats.json", "flag.skin.obj", "flag.skin.pc2",
@@ -213,7 +213,7 @@ TEST(RunDirectory, IsReadBack) {
   expect_error(ErrorKind::file, "no run here", [&] { RunReader(scratch.path()); });
 }
 
-TEST(RunDirectory, AStoppedRunGoesOnToTheSameBytes) {
+TEST(RunDirectory, StoppedRunResumesToTheSameBytes) {
   Scratch scratch;
   run_to(scratch / "straight", 8, false);
   run_to(scratch / "stopped", 3, false);
@@ -221,7 +221,7 @@ TEST(RunDirectory, AStoppedRunGoesOnToTheSameBytes) {
   expect_same_run(scratch / "straight", scratch / "stopped");
 }
 
-TEST(RunDirectory, ARunStoppedInsideAFrameGoesOnToTheSameBytes) {
+TEST(RunDirectory, RunStoppedInsideAFrameResumesToTheSameBytes) {
   Scratch scratch;
   run_to(scratch / "straight", 4, false);
   {
@@ -258,7 +258,7 @@ pid_t fork_off(const Body& body) {
   return child;
 }
 
-TEST(RunDirectory, AKilledRunGoesOnToTheSameBytes) {
+TEST(RunDirectory, KilledRunResumesToTheSameBytes) {
   Scratch scratch;
   constexpr int frames = 200;
   run_to(scratch / "straight", frames, false);
@@ -280,7 +280,7 @@ TEST(RunDirectory, AKilledRunGoesOnToTheSameBytes) {
   EXPECT_GT(interrupted, 3);
 }
 
-TEST(RunDirectory, HalfWrittenFramesBehindTheCheckpointAreCutOff) {
+TEST(RunDirectory, IncompleteFramesAfterTheCheckpointAreTruncated) {
   Scratch scratch;
   run_to(scratch / "straight", 6, false);
   run_to(scratch / "run", 3, false, false);
@@ -298,7 +298,7 @@ TEST(RunDirectory, HalfWrittenFramesBehindTheCheckpointAreCutOff) {
   expect_same_run(scratch / "straight", scratch / "run");
 }
 
-TEST(RunDirectory, ADamagedCheckpointFallsBackOnTheOneBefore) {
+TEST(RunDirectory, DamagedCheckpointFallsBackToThePreviousOne) {
   Scratch scratch;
   run_to(scratch / "straight", 6, false);
   run_to(scratch / "run", 4, false);
@@ -308,7 +308,7 @@ TEST(RunDirectory, ADamagedCheckpointFallsBackOnTheOneBefore) {
   expect_same_run(scratch / "straight", scratch / "run");
 }
 
-TEST(RunDirectory, ACacheThatIsGoneIsNamed) {
+TEST(RunDirectory, MissingCacheIsNamed) {
   Scratch scratch;
   run_to(scratch / "run", 2, false);
   fs::remove(scratch / "run/flag.skin.pc2");
@@ -316,7 +316,7 @@ TEST(RunDirectory, ACacheThatIsGoneIsNamed) {
                [&] { run_to(scratch / "run", 3, true); });
 }
 
-TEST(RunDirectory, AFullDiskIsAnErrorAndTheRunGoesOnLater) {
+TEST(RunDirectory, FullDiskIsAnErrorAndTheRunIsResumable) {
   Scratch scratch;
   constexpr int frames = 40;
   run_to(scratch / "straight", frames, false);
@@ -337,7 +337,7 @@ TEST(RunDirectory, AFullDiskIsAnErrorAndTheRunGoesOnLater) {
   expect_same_run(scratch / "straight", scratch / "run");
 }
 
-TEST(RunDirectory, ReplacesAnEarlierRunAndNothingElse) {
+TEST(RunDirectory, ReplacesOnlyAnEarlierRun) {
   Scratch scratch;
   run_to(scratch / "run", 5, false);
   test::write_bytes(scratch / "run/notes.txt", "mine");
@@ -347,7 +347,7 @@ TEST(RunDirectory, ReplacesAnEarlierRunAndNothingElse) {
   EXPECT_FALSE(fs::exists(scratch / "run/checkpoint/000005.state"));
 }
 
-TEST(RunDirectory, RefusesPlacesThatAreNoRun) {
+TEST(RunDirectory, RefusesDirectoriesWithoutARun) {
   Scratch scratch;
   test::write_bytes(scratch / "file", "x");
   fs::create_directories(scratch / "photos");
@@ -359,14 +359,14 @@ TEST(RunDirectory, RefusesPlacesThatAreNoRun) {
   EXPECT_EQ(std::distance(fs::directory_iterator(scratch / "photos"), {}), 1);
 }
 
-TEST(RunDirectory, LetsOneProcessWrite) {
+TEST(RunDirectory, AllowsOneWritingProcess) {
   Scratch scratch;
   Simulation simulation(model());
   RunWriter writer(scratch / "run", simulation, 1, false);
   expect_error(ErrorKind::file, "another process", [&] { run_to(scratch / "run", 1, true); });
 }
 
-TEST(RunDirectory, SaysWhatChangedInTheBodies) {
+TEST(RunDirectory, NamesChangesOfBodies) {
   Scratch scratch;
   run_to(scratch / "run", 2, false);
   Model changed = small_model();
@@ -376,7 +376,7 @@ TEST(RunDirectory, SaysWhatChangedInTheBodies) {
                [&] { RunWriter(scratch / "run", simulation, 4, true); });
 }
 
-TEST(RunDirectory, NotesOtherChangesOnResume) {
+TEST(RunDirectory, RecordsOtherChangesOnResume) {
   Scratch scratch;
   run_to(scratch / "run", 2, false);
   Model changed = small_model();
@@ -391,7 +391,7 @@ TEST(RunDirectory, NotesOtherChangesOnResume) {
   EXPECT_EQ(run["timings"]["sessions"][1]["changed"][0], "title");
 }
 
-TEST(RunDirectory, BodiesThatCannotNameFilesAreRefused) {
+TEST(RunDirectory, NamesThatCannotBeFileNamesAreRefused) {
   for (const char* name : {"", "../flag", "a/b", ".hidden", "two\nlines"})
     expect_error(ErrorKind::input, "cannot name files", [&] { body_files(name); });
   EXPECT_EQ(body_files("Fahne 2").skin_cache, "Fahne 2.skin.pc2");

@@ -56,7 +56,7 @@ TEST(Run, WritesTheThesisFlagAndReportsProgress) {
     EXPECT_NEAR(row.balance(), first.balance(), 1.0) << row.frame;  // of some 10 kJ
 }
 
-TEST(Run, TakesASceneWithMeshesOfItsOwnToTheSameBytesAsFromFiles) {
+TEST(Run, SceneWithMeshesInMemoryGivesTheBytesOfFiles) {
   Scratch scratch;
   run_scene(scene, options(scratch / "file", 2));
   Scene own = parse_scene(read_file(scene), scene);
@@ -67,7 +67,7 @@ TEST(Run, TakesASceneWithMeshesOfItsOwnToTheSameBytesAsFromFiles) {
     EXPECT_EQ(bytes_of(scratch / "file" / file), bytes_of(scratch / "own" / file)) << file;
 }
 
-TEST(Run, CtrlCLeavesARunThatGoesOnToTheSameBytes) {
+TEST(Run, InterruptedRunResumesToTheSameBytes) {
   Scratch scratch;
   run_scene(scene, options(scratch / "straight", 4));
   RunOptions stopped = options(scratch / "stopped", 4);
@@ -140,7 +140,7 @@ TEST(Run, ColoursAndTheTitleMayChangeOnResume) {
   EXPECT_NEAR(run.colour(0).y(), 0.2, 1e-12);
 }
 
-TEST(Run, GoesBackToAnyFrameWhoseStateWasKept) {
+TEST(Run, ResumesFromAnyFrameWithAKeptState) {
   Scratch scratch;
   run_scene(scene, options(scratch / "straight", 6));
   RunOptions kept = options(scratch / "run", 6);
@@ -236,7 +236,7 @@ TEST(Run, WarnsOfAStretchLimitThatPinsOverride) {
   EXPECT_TRUE(summary("honest")["overstretched"].empty());
 }
 
-TEST(Run, AStretchLimitMayBeNewOnResume) {
+TEST(Run, StretchLimitMayBeAddedOnResume) {
   Scratch scratch;
   Scene weak = pulled(0.5);
   weak.bodies[0].stretch_limit.reset();

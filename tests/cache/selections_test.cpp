@@ -32,7 +32,7 @@ Model with_force() {
   return model;
 }
 
-TEST(Selections, AreReadAsTheModelHasThem) {
+TEST(Selections, AreReadBackAsInTheModel) {
   Scratch scratch;
   const Model model = with_force();
   begin_run(scratch / "run", model);

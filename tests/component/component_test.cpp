@@ -75,7 +75,7 @@ std::vector<Vec3> rest_of(const Component& component) {
   return rest;
 }
 
-TEST_P(EveryKind, HasAsManyMassesVelocitiesAndLabelsAsVertices) {
+TEST_P(EveryKind, HasOneMassVelocityAndLabelPerVertex) {
   const auto component = build(GetParam());
   const auto count = static_cast<std::size_t>(component->vertex_count);
   ASSERT_GT(count, 0u);
@@ -103,7 +103,7 @@ TEST_P(EveryKind, CarriesItsMeshAtRest) {
   }
 }
 
-TEST_P(EveryKind, ContactSeesItsPointsWhereTheyAre) {
+TEST_P(EveryKind, ContactPointsLieOnItsSurface) {
   const auto component = build(GetParam());
   const std::optional<ContactPart> part = component->contact_part();
   ASSERT_TRUE(part);
@@ -121,7 +121,7 @@ TEST_P(EveryKind, ContactSeesItsPointsWhereTheyAre) {
   EXPECT_EQ(part->triangles.size(), part->faces.size());
 }
 
-TEST_P(EveryKind, RestsWithoutForceOfItsOwn) {
+TEST_P(EveryKind, HasNoInternalForceAtRest) {
   const auto component = build(GetParam());
   const std::vector<Vec3> rest = rest_of(*component);
   for (const PotentialTerm& term : component->potentials) {
@@ -132,7 +132,7 @@ TEST_P(EveryKind, RestsWithoutForceOfItsOwn) {
   EXPECT_NEAR(component->max_stretch(rest), 1, 1e-12);
 }
 
-TEST_P(EveryKind, AttachesAPointWhereItIsAsked) {
+TEST_P(EveryKind, AttachesAPointAtTheRequestedPlace) {
   const auto component = build(GetParam());
   const Vec3 at(0.2, 0, 0.1);
   const AttachedPoint attached = component->attach(at);
@@ -142,7 +142,7 @@ TEST_P(EveryKind, AttachesAPointWhereItIsAsked) {
   EXPECT_EQ(attached.warning, "");
 }
 
-TEST_P(EveryKind, LoadsOfItsPointsActOnItsVerticesWithTheirSum) {
+TEST_P(EveryKind, LoadsOnPointsActOnVerticesWithTheSameSum) {
   const auto component = build(GetParam());
   Selection where;
   where.nearest = {Vec3(0, 0, 0)};
@@ -157,7 +157,7 @@ TEST_P(EveryKind, LoadsOfItsPointsActOnItsVerticesWithTheirSum) {
             component->selects_vertices() ? 1u : static_cast<std::size_t>(component->vertex_count));
 }
 
-TEST_P(EveryKind, IsToldApartByItsHashes) {
+TEST_P(EveryKind, HashesDistinguishComponents) {
   const auto component = build(GetParam());
   const std::uint64_t shape = component->shape_hash(1);
   EXPECT_EQ(build(GetParam())->shape_hash(1), shape);
@@ -184,7 +184,7 @@ TEST_P(EveryKind, DescribesItselfAndWritesItsStages) {
 INSTANTIATE_TEST_SUITE_P(Components, EveryKind, testing::Values("lattice", "shell", "rigid", "fixed", "mesh"),
                          [](const auto& info) { return info.param; });
 
-TEST_F(Kinds, OnlyItsOwnKindIsGiven) {
+TEST_F(Kinds, CastsSucceedForTheirKindOnly) {
   const auto lattice = build("lattice"), shell = build("shell"), rigid = build("rigid");
   EXPECT_NE(as_lattice(*lattice), nullptr);
   EXPECT_EQ(as_lattice(*shell), nullptr);
@@ -192,7 +192,7 @@ TEST_F(Kinds, OnlyItsOwnKindIsGiven) {
   EXPECT_EQ(as_shell(*rigid), nullptr);
 }
 
-TEST_F(Kinds, OnlyRigidOnesDoNotDeformAndOnlyScriptedOnesIgnoreForces) {
+TEST_F(Kinds, RigidKindsDoNotDeformAndScriptedKindsIgnoreForces) {
   EXPECT_TRUE(build("lattice")->is_soft());
   EXPECT_TRUE(build("shell")->is_soft());
   EXPECT_FALSE(build("rigid")->deforms());
@@ -202,7 +202,7 @@ TEST_F(Kinds, OnlyRigidOnesDoNotDeformAndOnlyScriptedOnesIgnoreForces) {
   for (const char* kind : {"rigid", "fixed", "mesh"}) EXPECT_TRUE(build(kind)->is_collider()) << kind;
 }
 
-TEST(DisjointSets, AreNamedByTheirFirstVertex) {
+TEST(DisjointSets, AreRepresentedByTheirFirstVertex) {
   DisjointSets parts(6);
   parts.join(4, 2);
   parts.join(2, 5);

@@ -185,7 +185,7 @@ std::shared_ptr<const Model> model_with_net() {
   return std::make_shared<const Model>(build_model(scene_with_net()));
 }
 
-TEST(NewKind, IsBuiltIntoAModelBesideOthers) {
+TEST(NewKind, IsBuiltIntoAModelWithOthers) {
   const auto model = model_with_net();
   ASSERT_EQ(model->bodies.size(), 2u);
   const Component& net = model->body("net");
@@ -237,7 +237,7 @@ TEST(NewKind, ResumesWithTheSameBits) {
   EXPECT_THROW(different.restore(stopped.checkpoint()), Error);
 }
 
-TEST(NewKind, IsCachedExportedAndShown) {
+TEST(NewKind, IsCachedExportedAndDrawn) {
   const Scratch scratch;
   const std::filesystem::path run = scratch / "run";
   const auto model = model_with_net();

@@ -47,7 +47,7 @@ TEST(Motion, TurnsAboutItsPivotAtConstantSpeed) {
   }
 }
 
-TEST(Holds, HoldsWhatIsActiveAtTheEndOfTheStep) {
+TEST(Holds, PinActiveAtTheEndOfTheStepHolds) {
   Stepper s{{{"a", {1}, 0.5, 1.5, {}}}, {Vec3(0, 0, 0), Vec3(1, 0, 0)}, {}};
   s.step(0, 0.25);
   EXPECT_EQ(s.fixed, (std::vector<std::uint8_t>{0, 0}));
@@ -62,7 +62,7 @@ TEST(Holds, HoldsWhatIsActiveAtTheEndOfTheStep) {
   EXPECT_EQ(s.targets[1], Vec3(1, -0.25, 0));
 }
 
-TEST(Holds, ClockThatMissesByRoundingLetsGoInTheRightStep) {
+TEST(Holds, RoundingOfTheClockReleasesInTheRightStep) {
   double time = 0;
   for (int i = 0; i < 10; ++i) time += 0.1;  // 0.9999999999999999
   ASSERT_LT(time, 1.0);
@@ -71,7 +71,7 @@ TEST(Holds, ClockThatMissesByRoundingLetsGoInTheRightStep) {
   EXPECT_EQ(s.fixed, (std::vector<std::uint8_t>{0, 1}));
 }
 
-TEST(Holds, LaterPinWinsAndTheEarlierTakesOverWhereItHeld) {
+TEST(Holds, LaterPinHasPriorityAndTheEarlierContinuesAfterIt) {
   Motion lift;
   lift.keys = {{0, Vec3::Zero(), turn(0, Vec3::UnitX())}, {1, Vec3(0, 1, 0), turn(0, Vec3::UnitX())}};
   Stepper s{{{"floor", {0}, 0, 10, {}}, {"hand", {0}, 0, 0.9, lift}}, {Vec3(2, 0, 0)}, {}};
@@ -81,7 +81,7 @@ TEST(Holds, LaterPinWinsAndTheEarlierTakesOverWhereItHeld) {
   EXPECT_EQ(s.x[0], Vec3(2, 0, 0));
 }
 
-TEST(Holds, MotionIsRelativeToTheMomentOfTakingHold) {
+TEST(Holds, MotionIsRelativeToTheStartOfThePin) {
   Motion rise;
   rise.keys = {{0, Vec3(0, 0, 0), turn(0, Vec3::UnitX())}, {2, Vec3(0, 2, 0), turn(0, Vec3::UnitX())}};
   Stepper s{{{"a", {0}, 1, 10, rise}}, {Vec3(0, 0, 0)}, {}};
@@ -92,7 +92,7 @@ TEST(Holds, MotionIsRelativeToTheMomentOfTakingHold) {
   EXPECT_LT((s.x[0] - Vec3(0, 0, 0)).norm(), 1e-15);
 }
 
-TEST(Holds, PinTakenTwiceCapturesAnew) {
+TEST(Holds, PinThatStartsAgainRecordsNewPositions) {
   Stepper s{{{"a", {0}, 0, 1, {}}, {"b", {0}, 2, 3, {}}}, {Vec3::Zero()}, {}};
   s.step(0, 0.5);
   s.step(0.5, 1.5);
@@ -111,7 +111,7 @@ TEST(Holds, CopyContinuesWithTheSameBits) {
   EXPECT_EQ(a.x, b.x);
 }
 
-TEST(Holds, FollowsItsPointsAndKeepsTheDistanceItHadFromThem) {
+TEST(Holds, FollowsItsPointsWithAConstantOffset) {
   PointSequence sequence{2, {0, 1, 2}, {}};
   for (float t : {0.f, 1.f, 2.f}) {
     sequence.positions.emplace_back(0, t * t, 0);
@@ -144,7 +144,7 @@ TEST(Holds, FollowsItsPointsAndKeepsTheDistanceItHadFromThem) {
   EXPECT_EQ(s.x[2], Vec3(7, -0.5, 8.5));
 }
 
-TEST(Holds, TakeAnewWhereVerticesWerePutAndMoveThemOn) {
+TEST(Holds, ReanchorHoldsMovedVerticesAndContinuesTheMotion) {
   Motion lift;
   lift.keys = {{0, Vec3::Zero(), turn(0, Vec3::UnitZ())}, {2, Vec3(0, 2, 0), turn(90, Vec3::UnitZ())}};
   Stepper s{{{"turned", {0}, 0, 9, lift}, {"still", {1}, 0, 9, {}}, {"late", {2}, 1, 9, {}}},

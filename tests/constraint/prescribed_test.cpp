@@ -8,7 +8,7 @@
 namespace muslin {
 namespace {
 
-TEST(Prescribed, StandsStillWithoutKeys) {
+TEST(Prescribed, IsStaticWithoutKeys) {
   Prescribed p;
   p.first = 1;
   p.start = {{1, 2, 3}};
@@ -20,7 +20,7 @@ TEST(Prescribed, StandsStillWithoutKeys) {
   EXPECT_EQ(targets[2], Vec3::Zero());
 }
 
-TEST(Prescribed, MovesFromWhereItIsAtTimeZero) {
+TEST(Prescribed, MotionIsRelativeToTimeZero) {
   Prescribed p;
   p.motion.pivot = Vec3(1, 0, 0);
   p.motion.keys = {

@@ -92,7 +92,7 @@ void make_pair(PairKind kind, int trouble, std::mt19937_64& random, Four& x, Fou
 
 class SafeFractionOf : public ::testing::TestWithParam<PairKind> {};
 
-TEST_P(SafeFractionOf, NeverLetsFeaturesComeCloserThanRequired) {
+TEST_P(SafeFractionOf, NeverAllowsLessThanTheRequiredDistance) {
   std::mt19937_64 random(7);
   int stopped = 0, free = 0, early = 0;
   for (int trial = 0; trial < 1200; ++trial) {
@@ -121,7 +121,7 @@ TEST_P(SafeFractionOf, NeverLetsFeaturesComeCloserThanRequired) {
   EXPECT_EQ(early, 0);
 }
 
-TEST_P(SafeFractionOf, LetsFeaturesPartAndSlideFreely) {
+TEST_P(SafeFractionOf, DoesNotLimitSeparationAndSliding) {
   std::mt19937_64 random(8);
   for (int trial = 0; trial < 500; ++trial) {
     Four x, u;

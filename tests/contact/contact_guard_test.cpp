@@ -109,7 +109,7 @@ struct RigidWay {
   }
 };
 
-TEST(RigidWays, AreLeftWholeAwayFromOthers) {
+TEST(RigidWays, AreNotLimitedFarFromOthers) {
   Scene scene(22);
   for (std::size_t v = 0; v < scene.cloth_size; ++v) scene.q[v].y() += 2;
   ContactMemory memory;

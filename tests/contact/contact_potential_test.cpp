@@ -23,7 +23,7 @@
 namespace muslin {
 namespace {
 
-TEST(ContactLaw, HasItsDerivativesAndBeginsAsASpring) {
+TEST(ContactLaw, HasConsistentDerivativesAndBeginsAsASpring) {
   const double range = 0.002, h = 1e-9;
   for (const double gap : {0.0001, 0.0006, 0.0009999, 0.0010001, 0.0015, 0.00199}) {
     const Law at = contact_law(gap, range);
@@ -119,7 +119,7 @@ struct Scene {
 
 class ContactPotentialOf : public ::testing::TestWithParam<bool> {};
 
-TEST_P(ContactPotentialOf, KeepsTheFrictionOfAnother) {
+TEST_P(ContactPotentialOf, TakesOverTheFrictionOfAnother) {
   Scene scene(GetParam());
   const ContactPotential first = scene.potential(0.5);
   scene.q = test::sum(scene.q, 1, test::random_vectors(scene.q.size(), 2e-4, 11));
@@ -174,7 +174,7 @@ TEST_P(ContactPotentialOf, HasASymmetricPositiveHessianWithItsDiagonal) {
   }
 }
 
-TEST_P(ContactPotentialOf, PushesNeitherAsAWholeNorTurns) {
+TEST_P(ContactPotentialOf, HasNoNetForceAndTorque) {
   // Action and reaction: between all bodies, the floor too, forces add to nothing.
   const Scene scene(GetParam());
   const std::vector<Vec3> g = test::gradient(scene.potential(0.5), scene.q);
@@ -242,7 +242,7 @@ struct PointOverSheet {
   }
 };
 
-TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
+TEST(ContactPotential, CountsEveryContactOnce) {
   // The same force over faces, edges and corners.
   const PointOverSheet scene;
   for (const Vec3& over :
@@ -250,7 +250,7 @@ TEST(ContactPotential, CountsAContactOnceWhereverItLies) {
     EXPECT_NEAR(scene.force(over).y(), scene.alone, 1e-9) << over.transpose();
 }
 
-TEST(ContactPotential, CountsItOnceAmongAThousandTriangles) {
+TEST(ContactPotential, CountsAContactOnceAmongAThousandTriangles) {
   // The range is ten edges of the sheet.
   const PointOverSheet scene(41, 0.0002);
   for (const Vec3& over :
@@ -258,7 +258,7 @@ TEST(ContactPotential, CountsItOnceAmongAThousandTriangles) {
     EXPECT_NEAR(scene.force(over).y(), scene.alone, 1e-9) << over.transpose();
 }
 
-TEST(MergedContacts, OfBallsNearToManyTrianglesNameEachPlaceOnceAndLoseNothing) {
+TEST(MergedContacts, ListEachContactOfABallNearManyTrianglesOnce) {
   // Two balls over cloth of millimetres, near to a thousand triangles each, some of them the same.
   constexpr double radius = 0.25, range = 0.001;
   constexpr int side = 24, sheet_points = side * side;
@@ -314,7 +314,7 @@ TEST(MergedContacts, OfBallsNearToManyTrianglesNameEachPlaceOnceAndLoseNothing) 
   }
 }
 
-TEST(ContactPotential, CountsItAboutOnceBesideEdgesAndCorners) {
+TEST(ContactPotential, CountsAContactAboutOnceNearEdgesAndCorners) {
   const PointOverSheet scene;
   double least = scene.alone, most = scene.alone;
   for (int i = 0; i <= 60; ++i) {
@@ -328,7 +328,7 @@ TEST(ContactPotential, CountsItAboutOnceBesideEdgesAndCorners) {
   EXPECT_LT(most, 1.3 * scene.alone);
 }
 
-TEST(ContactPotential, HasForcesThatDoNotJump) {
+TEST(ContactPotential, HasContinuousForces) {
   // Where they do there may be no balance, and Newton's method goes to and fro. Over ridges, valleys and
   // corners of a crumpled sheet, each stretch of the way is halved where the force changes more.
   PointOverSheet scene;
@@ -399,7 +399,7 @@ std::array<double, 2> slide(double friction, double slope) {
   return {halfway, q[0].x()};
 }
 
-TEST(Friction, HoldsBelowItsAngleAndSlidesAsCoulombSaysAbove) {
+TEST(Friction, SticksBelowTheFrictionAngleAndSlidesAsCoulombAbove) {
   const double slope = std::atan(0.3), time = 400.0 / 240;
   const auto [landed, later] = slide(0.33, slope);  // at 90 % of the limit
   EXPECT_LT(landed, 2e-4);
@@ -471,7 +471,7 @@ TEST(TurningBall, HasTheGradientOfItsValueAndAPositiveHessian) {
   test::expect_diagonal_blocks_positive_semidefinite(w, q);
 }
 
-TEST(TurningBall, RubsWhereItsSurfaceMovesAndNotWhereItRolls) {
+TEST(TurningBall, HasFrictionWhereItSlipsAndNoneWhereItRolls) {
   Balls balls;
   for (std::size_t i = 4; i < 8; ++i) balls.q[i].x() += 1;  // out of the way
   const double stick = 1e-6, angle = 1e-4, way = angle * Balls::radius;
@@ -485,7 +485,7 @@ TEST(TurningBall, RubsWhereItsSurfaceMovesAndNotWhereItRolls) {
   EXPECT_LT(rolled, 1e-3 * slid);
 }
 
-TEST(ContactPotential, RefusesNonsense) {
+TEST(ContactPotential, RefusesInvalidInput) {
   const Scene scene;
   EXPECT_THROW(scene.potential(-1), Error);
   EXPECT_THROW(scene.potential(1, 0), Error);

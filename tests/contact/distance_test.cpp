@@ -122,7 +122,7 @@ TEST_P(Distance, GradientIsWeightsTimesNormal) {
   }
 }
 
-TEST_P(Distance, MovesAndTurnsWithItsPoints) {
+TEST_P(Distance, IsRigidMotionInvariant) {
   Random random(5);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.1, Vec3(1, -2, 0.5).normalized()));
   for (int trial = 0; trial < 100; ++trial) {
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(Pairs, Distance, ::testing::Values(PairKind::vertex_tri
                            return kind.param == PairKind::vertex_triangle ? "VertexTriangle" : "EdgeEdge";
                          });
 
-TEST(EdgeEdge, KnowsCrossingParallelAndCollinearEdges) {
+TEST(EdgeEdge, HandlesCrossingParallelAndCollinearEdges) {
   const ClosestPoints crossing = closest_edge_edge({-1, 0, 0}, {1, 0, 0}, {0, 0.5, -1}, {0, 0.5, 3});
   EXPECT_DOUBLE_EQ(crossing.distance(), 0.5);
   EXPECT_DOUBLE_EQ(crossing.weights[1], 0.5);

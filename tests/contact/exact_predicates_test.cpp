@@ -62,7 +62,7 @@ TEST(Orientation, IsExactForPointsNextToAPlane) {
   EXPECT_GT(zeros, 50);  // else the test says little
 }
 
-TEST(Orientation, MixesTheLargestAndTheSmallestDoubles) {
+TEST(Orientation, IsExactForTheLargestAndTheSmallestDoubles) {
   const double huge = 1.7e308, tiny = 5e-324;
   EXPECT_EQ(orientation({0, 0, 0}, {huge, 0, 0}, {0, huge, 0}, {0, 0, tiny}), 1);
   EXPECT_EQ(orientation({0, 0, 0}, {huge, 0, 0}, {0, huge, 0}, {0, 0, -tiny}), -1);

@@ -23,7 +23,7 @@ TEST(FindIntersections, FindsNoneInFlatTurnedAndCurvedCloth) {
   EXPECT_TRUE(find_intersections(cloth.positions, cloth.triangles).empty());
 }
 
-TEST(FindIntersections, AgreesWithTryingEveryPairOfACrumpledSheet) {
+TEST(FindIntersections, AgreesWithBruteForceOnACrumpledSheet) {
   test::ClothGrid cloth(14, 14, 0.1);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> noise(-0.12, 0.12);
@@ -52,7 +52,7 @@ TEST(FindIntersections, AgreesWithTryingEveryPairOfACrumpledSheet) {
   for (const Intersection& i : found) EXPECT_TRUE(i.at.allFinite());
 }
 
-TEST(FindIntersections, SaysWhere) {
+TEST(FindIntersections, ReportsThePlace) {
   const std::vector<Vec3> positions = {{0, 0, 0},      {1, 0, 0},     {0, 1, 0},
                                        {0.2, 0.2, -1}, {0.2, 0.3, 1}, {5, 5, 1}};
   const std::vector<Vec3i> triangles = {{0, 1, 2}, {3, 4, 5}};
@@ -64,7 +64,7 @@ TEST(FindIntersections, SaysWhere) {
   EXPECT_LT((found[0].at - Vec3(0.2, 0.25, 0)).norm(), 0.5);
 }
 
-TEST(FindIntersections, KnowsFoldsDuplicatesSegmentsAndPoints) {
+TEST(FindIntersections, HandlesFoldsDuplicatesSegmentsAndPoints) {
   const std::vector<Vec3> positions = {{0, 0, 0},      {1, 0, 0},     {0, 1, 0},    {1, 0.1, 0},
                                        {0.2, 0.2, -1}, {0.2, 0.2, 1}, {0.1, 0.1, 0}};
   const auto pairs = [&](std::vector<Vec3i> triangles) {
@@ -101,7 +101,7 @@ TEST(FindIntersections, IsTheSameForAnyThreadCountAndStopsAtTheLimit) {
   EXPECT_TRUE(none.empty());
 }
 
-TEST(FindIntersections, RefusesNonsense) {
+TEST(FindIntersections, RefusesInvalidInput) {
   const std::vector<Vec3i> triangles = {{0, 1, 2}};
   EXPECT_THROW(find_intersections(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}, triangles), Error);
   EXPECT_THROW(find_intersections(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {NAN, 0, 0}}, triangles), Error);

@@ -30,7 +30,7 @@ struct Crumpled {
                    2e-3) {}
 };
 
-TEST(PairDistances, AreNeverMoreThanTrueAndKnownWhereNear) {
+TEST(PairDistances, AreLowerBoundsAndExactForNearPairs) {
   Crumpled cloth(test::draped_cloth(30));
   // Far from the origin and all together far along, so that only ways relative to each other tell.
   for (Vec3& p : cloth.x) p += Vec3(3, -2, 1);
@@ -56,7 +56,7 @@ TEST(PairDistances, AreNeverMoreThanTrueAndKnownWhereNear) {
   EXPECT_GT(unknown, cloth.candidates.pairs().size()) << "bounds hardly ever tell that a pair is far";
 }
 
-TEST(PairDistances, FindWhatTheyDidNotKnow) {
+TEST(PairDistances, FindComputesUnknownPairs) {
   Crumpled cloth(test::draped_cloth(12));
   cloth.candidates.update(cloth.x, cloth.x, 0.05);
   PairDistances distances = test::distances_at(cloth.candidates, cloth.x);

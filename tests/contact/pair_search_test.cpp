@@ -162,7 +162,7 @@ TEST(PairSearch, CoversMotion) {
   }
 }
 
-TEST(PairSearch, FindsNoMoreWhereAllMoveAlike) {
+TEST(PairSearch, FindsNoAdditionalPairsInUniformMotion) {
   // Slanted cloth that goes ten edges far as a whole is as far from itself as cloth at rest.
   const Scene scene(true, 0);
   std::vector<Vec3> from = scene.positions, after = from;
@@ -175,7 +175,7 @@ TEST(PairSearch, FindsNoMoreWhereAllMoveAlike) {
   EXPECT_GT(around, 5 * still);
 }
 
-TEST(PairSearch, FindsThePairsOfSomePointsAlone) {
+TEST(PairSearch, FindsOnlyThePairsOfMovedPoints) {
   const Scene scene;
   const double reach = 0.06;
   std::vector<std::uint8_t> moved(scene.positions.size(), 0);
@@ -210,7 +210,7 @@ TEST(PairSearch, FindsThePairsOfSomePointsAlone) {
   EXPECT_EQ(some.edge_edge, expected.edge_edge);
 }
 
-TEST(PairSearch, LeavesOutSelfContactWhenToldTo) {
+TEST(PairSearch, ExcludesSelfContactIfDisabled) {
   const Scene scene(false);
   const FeaturePairs found = sorted_pairs(scene, boxes_at(scene.positions), 0.03);
   EXPECT_FALSE(found.vertex_triangle.empty());
@@ -220,7 +220,7 @@ TEST(PairSearch, LeavesOutSelfContactWhenToldTo) {
   }
 }
 
-TEST(PairSearch, FindsLittleInFlatCloth) {
+TEST(PairSearch, FindsFewPairsInFlatCloth) {
   const Scene flat(true, 0);
   const FeaturePairs found = sorted_pairs(flat, boxes_at(flat.positions), 0.002);
   EXPECT_LT(found.edge_edge.size(), 8 * flat.surface->edges().size());
@@ -238,7 +238,7 @@ TEST(PairSearch, KeepsItsOrderForAnyThreadCount) {
   EXPECT_EQ(many.edge_edge, one.edge_edge);
 }
 
-TEST(ContactCandidates, GiveThickClothOnAFineMeshNoContactAtRest) {
+TEST(ContactCandidates, ThickClothOnAFineMeshIsNotInContactAtRest) {
   // 8 mm thick, 2 mm range, 5 mm edges, under a ball of 1 m: what is close at rest is left out, what comes
   // close by folding is not, and the ball's size does not matter.
   const test::ClothGrid cloth(12, 12, 0.005);
@@ -266,7 +266,7 @@ TEST(ContactCandidates, GiveThickClothOnAFineMeshNoContactAtRest) {
                           [](const ContactPair& pair) { return pair.thickness == 0.008; }));
 }
 
-TEST(ContactCandidates, AreCompleteAfterSomePointsWereFoundAnew) {
+TEST(ContactCandidates, AreCompleteAfterRenewalOfSomePoints) {
   // A few points move far beyond their boxes, the others stay within theirs: whatever is in range then is a
   // candidate, once, and what is said of its distance holds.
   const Scene scene;
@@ -306,7 +306,7 @@ TEST(ContactCandidates, AreCompleteAfterSomePointsWereFoundAnew) {
   EXPECT_GT(close, 50);
 }
 
-TEST(ContactCandidates, AreCompleteWhileAllPointsGoAtTheSamePace) {
+TEST(ContactCandidates, AreCompleteForLinearMotionOfAllPoints) {
   // Far ways, some of which end short of where they were to go and are found anew: whatever is in range on
   // the way is a candidate.
   const Scene scene;
@@ -364,7 +364,7 @@ TEST(ContactSurface, OwnsEachFeatureOnce) {
   EXPECT_EQ(scene.surface->triangles_at_edge(static_cast<int>(edges.size()) - 1).size(), 1U);
 }
 
-TEST(ContactSurface, RefusesNonsense) {
+TEST(ContactSurface, RefusesInvalidInput) {
   EXPECT_THROW(ContactSurface({{0, 1, 3}}, {0, 0, 0}, {{}}), Error);
   EXPECT_THROW(ContactSurface({{0, 1, 2}}, {0, 0, 1}, {{}, {}}), Error);
   EXPECT_THROW(ContactSurface({{0, 1, 2}}, {0, 0, 1}, {{}}), Error);

@@ -117,7 +117,7 @@ TEST_P(ViolentSteps, NeverMakeCrumpledClothCrossItself) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ViolentSteps, ::testing::Range(1, 4));
 
-TEST(StepLimiter, LeavesAHarmlessStepAlone) {
+TEST(StepLimiter, DoesNotChangeASafeStep) {
   Scene scene = cloth_scene(20);
   ContactCandidates candidates = scene.candidates();
   const StepLimiter limiter(scene.map, {});
@@ -128,7 +128,7 @@ TEST(StepLimiter, LeavesAHarmlessStepAlone) {
   for (std::size_t v = 0; v < before.size(); ++v) EXPECT_EQ(scene.q[v], before[v] + dq[v]);
 }
 
-TEST(StepLimiter, TakesOnlyTheNormalPartOfAnApproach) {
+TEST(StepLimiter, RemovesOnlyTheNormalApproach) {
   // A sheet slides over another while it is pressed down.
   const test::ClothGrid sheet(6, 6, 0.1);
   Scene scene;
@@ -156,7 +156,7 @@ TEST(StepLimiter, TakesOnlyTheNormalPartOfAnApproach) {
   }
 }
 
-TEST(StepLimiter, HoldsSpheresCapsulesAndPlanesOff) {
+TEST(StepLimiter, SeparatesSpheresCapsulesAndPlanes) {
   // Cloth thrown onto a plane, a ball and a pole, faster than anything is thick.
   const test::ClothGrid sheet(15, 15, 0.05);
   Scene scene;
@@ -195,7 +195,7 @@ TEST(StepLimiter, HoldsSpheresCapsulesAndPlanesOff) {
   EXPECT_GT(scene.q[static_cast<std::size_t>(7 * 15 + 9)].y(), 0.15);  // above the ball
 }
 
-TEST(StepLimiter, KeepsThicknessHoweverLongSomethingPresses) {
+TEST(StepLimiter, KeepsThicknessUnderSustainedPressure) {
   // A ball of 1 m on a triangle, pushed down for as long as it takes to lose a millionth of its radius a
   // step.
   Scene scene;
@@ -216,7 +216,7 @@ TEST(StepLimiter, KeepsThicknessHoweverLongSomethingPresses) {
   }
 }
 
-TEST(StepLimiter, MakesClothGiveWayToAMovingCollider) {
+TEST(StepLimiter, ClothYieldsToAMovingCollider) {
   // A triangle moved along keyframes hits a free sheet from below.
   const test::ClothGrid sheet(9, 9, 0.05);
   Scene scene;
@@ -316,7 +316,7 @@ TEST(StepLimiter, GivesTheSameBitsForAnyThreadCount) {
   EXPECT_EQ(results[0], results[2]);
 }
 
-TEST(StepLimiter, KeepsFreeClothSlidingOverAFloorFromLocking) {
+TEST(StepLimiter, FreeClothSlidesOverAFloorWithoutLocking) {
   // Gaps at the floor must not stop what moves along or away.
   Scene scene = cloth_scene(12);
   ContactCandidates candidates = scene.candidates();
@@ -334,7 +334,7 @@ TEST(StepLimiter, KeepsFreeClothSlidingOverAFloorFromLocking) {
   for (std::size_t v = 0; v < crumpled.size(); ++v) EXPECT_LT((scene.q[v] - 2 * crumpled[v]).norm(), 1e-9);
 }
 
-TEST(StepLimiter, KeepsAShareOfEveryGapIfAsked) {
+TEST(StepLimiter, KeepsTheRequestedShareOfEveryGap) {
   // What stops short of the floor by itself is stopped there as well.
   for (const double share : {0.0, 0.4}) {
     std::mt19937_64 random(3);
@@ -359,7 +359,7 @@ TEST(StepLimiter, KeepsAShareOfEveryGapIfAsked) {
   }
 }
 
-TEST(StepLimiter, RefusesNonsense) {
+TEST(StepLimiter, RefusesInvalidInput) {
   const auto map = std::make_shared<SurfaceMap>(SurfaceMap::identity(3));
   EXPECT_THROW(StepLimiter(map, {.gap_floor = 0, .prescribed = {}, .groups = {}}), Error);
   EXPECT_THROW(StepLimiter(map, {.gap_floor = 1, .prescribed = {1}, .groups = {}}), Error);

@@ -29,7 +29,7 @@ Four random_four(std::mt19937_64& random) {
           a + turn * Vec3(1, 0, 0), a + turn * Vec3(0, 1, 0)};
 }
 
-TEST(TurningPlane, HasTheDerivativesItSays) {
+TEST(TurningPlane, HasConsistentDerivatives) {
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 50; ++trial) {
     const Four x = random_four(random);
@@ -48,7 +48,7 @@ TEST(TurningPlane, HasTheDerivativesItSays) {
   }
 }
 
-TEST(TurningPlane, IsNeverNearedMoreThanAllowed) {
+TEST(TurningPlane, NeverAllowsLessThanTheRequiredDistance) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> any(-1, 1);
   int stopped = 0;
@@ -68,7 +68,7 @@ TEST(TurningPlane, IsNeverNearedMoreThanAllowed) {
   EXPECT_LT(stopped, 1600);
 }
 
-TEST(TurningPlane, StopsWhereTheWayEnds) {
+TEST(TurningPlane, StopsAtTheEndOfTheSafeMotion) {
   const Four x = {Vec3(0.3, 1, 0), Vec3::Zero(), Vec3(0, 0, 1), Vec3(1, 0, 0)};
   ASSERT_NEAR(over_plane(x).distance, 1, 1e-15);
   const Four falls = {Vec3(5, -2, 0), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};

@@ -31,7 +31,7 @@ TEST(NearestName, CountsInsertionsDeletionsReplacementsAndSwaps) {
   EXPECT_EQ(edit_distance("Mesh", "mesh"), 0);
 }
 
-TEST(NearestName, OffersTheNearestOrAllWhenNoneIsNear) {
+TEST(NearestName, OffersTheNearestNameOrAllNames) {
   const std::vector<std::string> names = {"duration", "frame_rate", "steps_per_frame"};
   EXPECT_EQ(name_advice("duraton", names), "did you mean `duration`?");
   EXPECT_EQ(name_advice("x", names), "use one of `duration`, `frame_rate`, `steps_per_frame`");
@@ -64,7 +64,7 @@ TEST(TomlValue, RefusesKeysAndNestingThatOverflowTheStack) {
   EXPECT_NE(message([] { parse_toml("x = " + std::string(100'000, '['), "f.toml"); }), "no error");
 }
 
-TEST(TomlValue, DotsInTextsAndCommentsAreNoKeys) {
+TEST(TomlValue, DotsInTextsAndCommentsAreNotKeys) {
   const std::string dots(1000, '.');
   EXPECT_EQ(message([&] {
               parse_toml("a = \"" + dots + "\\\"" + dots + "\" # " + dots + "\nb = '" + dots +

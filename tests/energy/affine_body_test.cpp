@@ -45,7 +45,7 @@ Eigen::Matrix<double, 12, 12> hessian(const Potential& energy, ConstVectors x) {
   return h;
 }
 
-TEST(AffineBodyEnergy, EveryDistortionIsAsStiffWhateverTheShape) {
+TEST(AffineBodyEnergy, DistortionsHaveTheSameStiffnessForAnyShape) {
   // Masses of ¼ kg: squared frequencies are 4 × eigenvalues. Six rigid motions, six distortions of ω² = k/m
   // within a factor of two.
   for (const Vec3& radii : {Vec3(0.2, 0.2, 0.2), Vec3(1, 1, 1e-3), Vec3(1, 1e-3, 1e-3), Vec3(3, 0.2, 0.01)}) {
@@ -89,7 +89,7 @@ TEST(AffineBodyEnergy, LinearizationIsPositiveSemidefiniteAndTheHessianWhereStre
   }
 }
 
-TEST(AffineBodyEnergy, RefusesWhatHasNoSize) {
+TEST(AffineBodyEnergy, RefusesBodiesWithoutSize) {
   EXPECT_THROW(AffineBodyEnergy(Vec3(1, 0, 1), 1), Error);
   EXPECT_THROW(AffineBodyEnergy(Vec3(1, 1, 1), 0), Error);
 }

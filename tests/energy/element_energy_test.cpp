@@ -43,7 +43,7 @@ TEST(ElementDamping, PassesTheBattery) {
   }
 }
 
-TEST(ElementDamping, LeavesFallingAndTurningAlone) {
+TEST(ElementDamping, DoesNotDampFreeFallAndRotation) {
   const Mesh mesh = test::flat_sheet(5, 4, 0.5, 0.4);
   const double dt = 1e-3, spin = 2;
   std::vector<Vec3> turning, strained;
@@ -77,7 +77,7 @@ TEST(ElementDamping, IsRayleighs) {
   }
 }
 
-TEST(ElementEnergy, MatrixIsTheProjectedStiffnessWhereMassesHoldNothing) {
+TEST(ElementEnergy, MatrixIsTheProjectedStiffnessWithoutMasses) {
   const Mesh mesh = test::flat_sheet(30, 25, 0.6, 0.5, 0.2);
   const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
   const auto pattern = block_pattern(shell);

@@ -153,7 +153,7 @@ TEST_P(ElementsBattery, BlocksProductsAndMatrixOfTheProjectedStiffnessAgree) {
   }
 }
 
-TEST_P(ElementsBattery, ProjectedStiffnessIsPositiveAndAtLeastTheExactOneButOfHinges) {
+TEST_P(ElementsBattery, ProjectedStiffnessIsPositiveAndExceptForHingesAtLeastTheExactOne) {
   const Case c = GetParam().make();
   for (const auto& x : c.deformed) {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
@@ -173,7 +173,7 @@ TEST_P(ElementsBattery, ProjectedStiffnessIsPositiveAndAtLeastTheExactOneButOfHi
   }
 }
 
-TEST_P(ElementsBattery, MaterialStiffnessDoesNotResistTurning) {
+TEST_P(ElementsBattery, MaterialStiffnessDoesNotResistRotation) {
   const Case c = GetParam().make();
   for (const auto& x : c.deformed) {
     std::vector<Vec3> turning, y(x.size(), Vec3::Zero()), other = y;

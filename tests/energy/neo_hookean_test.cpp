@@ -45,7 +45,7 @@ TEST(NeoHookean, SmallStrainsHaveTheEnergyOfLinearElasticity) {
   EXPECT_NEAR(block.density(f) / (e * e * linear), 1, 1e-3);
 }
 
-TEST(NeoHookean, UniformStretchHasTheEnergyOfTheLawWhateverTheTetrahedron) {
+TEST(NeoHookean, UniformStretchHasTheEnergyOfTheLawForAnyTetrahedron) {
   const Block block;
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   Mat3 f;
@@ -66,7 +66,7 @@ TEST(NeoHookean, FillOfAVoxelScalesItsElements) {
   EXPECT_NEAR(quarter / whole, 0.25, 1e-12);
 }
 
-TEST(NeoHookean, PatchOfUniformStrainHasNoForceInside) {
+TEST(NeoHookean, UniformStrainHasNoForceInside) {
   // The patch test: a uniform deformation of a lattice is in equilibrium at every inner vertex.
   const Block block;
   Mat3 f;
@@ -100,7 +100,7 @@ TEST(NeoHookean, InvertedFlatAndCollapsedElementsHaveFiniteForcesAndStiffness) {
   }
 }
 
-TEST(NeoHookean, InvertedBlockIsPushedBack) {
+TEST(NeoHookean, InvertedBlockHasARestoringForce) {
   // W falls all the way from a mirrored block to the one at rest.
   const Block block;
   double last = INFINITY;

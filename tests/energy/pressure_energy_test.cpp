@@ -27,7 +27,7 @@ constexpr Gas constant{3000, 0, 0};
 
 Gas air(double rest_volume) { return {2000, 101325, rest_volume}; }
 
-TEST(EnclosedVolume, IsThatOfABallWhereverItIs) {
+TEST(EnclosedVolume, IsTranslationInvariantAndExactForABall) {
   const double exact = 4 * std::numbers::pi / 3 * 0.001;
   EXPECT_NEAR(volume_of(ball(60, 0.1))->value(ball(60, 0.1).x) / exact, 1, 5e-3);
   const Surface here = ball(12, 0.1), far = ball(12, 0.1, false, Vec3(1000, -2000, 500));
@@ -41,7 +41,7 @@ TEST(EnclosedVolume, HoleIsClosedByAFlatLid) {
   EXPECT_NEAR(volume_of(open)->value(open.x) / exact, 1, 6e-3);
 }
 
-TEST(EnclosedVolume, RefusesFacesThatAreNotOrientedAlike) {
+TEST(EnclosedVolume, RefusesInconsistentOrientation) {
   Surface s = ball(4, 1);
   std::swap(s.triangles[3][0], s.triangles[3][1]);
   EXPECT_THROW((void)volume_of(s), Error);
@@ -113,7 +113,7 @@ TEST(PressureEnergy, BlocksArePositiveAndTheHessianWithoutItsNegativePart) {
   }
 }
 
-TEST(Pressure, FollowsItsTime) {
+TEST(Pressure, FollowsItsKeyframesAndWindow) {
   const Surface s = ball(4, 0.1);
   const Pressure load(volume_of(s), [](double, double t) -> std::optional<Gas> {
     if (t == 0) return std::nullopt;

@@ -98,7 +98,7 @@ TEST(ShellBending, RolledSheetHasTheRigidityGivenInEveryDirection) {
   }
 }
 
-TEST(ShellBending, FoldedFlatItStaysContinuous) {
+TEST(ShellBending, IsContinuousWhenFoldedFlat) {
   Mesh mesh;
   mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.5, 1, 0), Vec3(0.5, -1, 0)};
   mesh.add_face(std::array{0, 1, 2});
@@ -120,7 +120,7 @@ TEST(ShellBending, FoldedFlatItStaysContinuous) {
   for (const Vec3& y : test::hessian_product(energy, flat, mesh.positions)) EXPECT_TRUE(y.allFinite());
 }
 
-TEST(ShellBending, FlippedPolygonsBendAlike) {
+TEST(ShellBending, FlippedPolygonsHaveTheSameBending) {
   const Mesh mesh = test::flat_sheet(5, 5, 1, 1, 0.2);
   Mesh mixed;
   mixed.positions = mesh.positions;
@@ -150,7 +150,7 @@ TEST(ShellBending, CouplingIsPositiveAndAtMostTwiceTheLumped) {
   EXPECT_EQ(ShellBending(shell, {}).value(test::rolled(mesh.positions, 3)), 0);
 }
 
-TEST(ShellBending, CreasesAndInvertedTrianglesAtRestAreSound) {
+TEST(ShellBending, CreasesAndInvertedTrianglesAtRestAreHandled) {
   // A box folded along a line by 90 and by 180 degrees, and a vertex moved across its opposite edge.
   for (const double fold : {pi / 2, pi}) {
     Mesh mesh = test::flat_sheet(8, 5, 0.8, 0.5, 0.2);
@@ -170,14 +170,14 @@ TEST(ShellBending, CreasesAndInvertedTrianglesAtRestAreSound) {
   for (const Vec3& g : test::gradient(energy, test::rolled(mesh.positions, 1))) EXPECT_TRUE(g.allFinite());
 }
 
-TEST(ShellBending, HeldTrianglesStoreNothingAmongThemselves) {
+TEST(ShellBending, HeldTrianglesStoreNoEnergy) {
   const Mesh mesh = test::flat_sheet(4, 3, 0.4, 0.3);
   const Shell shell = build_shell(mesh, mesh.positions, along_x);
   const std::vector<std::uint8_t> held(mesh.vertex_count(), 1);
   EXPECT_EQ(ShellBending(shell, even, nullptr, held).value(test::rolled(mesh.positions, 3)), 0);
 }
 
-TEST(ShellBending, RefusesModuliThatAreNoPlate) {
+TEST(ShellBending, RefusesInvalidModuli) {
   const Mesh mesh = test::flat_sheet(2, 2, 1, 1);
   const Shell shell = build_shell(mesh, mesh.positions, along_x);
   for (const BendingModuli& wrong :
@@ -185,7 +185,7 @@ TEST(ShellBending, RefusesModuliThatAreNoPlate) {
     EXPECT_THROW(couple_hinges(shell, wrong), Error);
 }
 
-TEST(ShellBending, AtTheLowestBiasATwistIsFree) {
+TEST(ShellBending, LowestBiasDoesNotResistTwist) {
   const Mesh mesh = test::flat_sheet(12, 12, 1, 1);
   std::vector<Vec3> twisted = mesh.positions;
   for (Vec3& p : twisted) p.y() = 0.01 * p.x() * p.z();

@@ -166,7 +166,7 @@ TEST(SolidBar, SimpleShearHasTheShearModulus) {
   }
 }
 
-TEST(SolidBar, HangingUnderItsWeightStretchesAsTheStrengthOfMaterialsSays) {
+TEST(SolidBar, HangingBarHasTheClosedFormElongation) {
   // The middle of the lower end sinks by ρ g L²/(2E), where the upper end slides on its plate.
   const double weight_density = 200;  // ρ g [N/m³]: strains of 2e-4
   for (const int across : {1, 2, 3}) {

@@ -129,7 +129,7 @@ TEST(StretchLimitEnergy, HasTheClosedFormOfAStripInEveryDirection) {
   }
 }
 
-TEST(StretchLimitEnergy, StiffnessIsPositiveAndTheSameOfBothKinds) {
+TEST(StretchLimitEnergy, ProjectedAndExactStiffnessAreEqualAndPositive) {
   const Mesh mesh = test::flat_sheet(5, 4, 0.5, 0.4, 0.2);
   const Shell shell = build_shell(mesh, mesh.positions, along_x);
   const auto pattern = block_pattern(shell);

@@ -36,7 +36,7 @@ TEST(VolumeEnergy, LargeBodyHasTheSameBitsForAnyThreadCount) {
   test::expect_same_bits_for_any_thread_count(energy, x);
 }
 
-TEST(VolumeEnergy, EvenDeformationHasTheClosedForm) {
+TEST(VolumeEnergy, UniformDeformationHasTheClosedForm) {
   // Fill counts as volume: a half-filled voxel stores half.
   Lattice lattice = test::box_lattice({2, 3, 4}, 0.25);
   for (double& f : lattice.fill) f = 0.5;
@@ -66,7 +66,7 @@ TEST(VolumeEnergy, ActsAsABulkModulus) {
   EXPECT_NEAR(value / (0.5 * 1000 * 8 * std::pow(3 * strain, 2)), 1, 1e-4);
 }
 
-TEST(VolumeEnergy, PushesAFlattenedAndAnInvertedVoxelBack) {
+TEST(VolumeEnergy, RestoresFlattenedAndInvertedVoxels) {
   const Lattice lattice = test::box_lattice({1, 1, 1});
   const std::vector<Vec3> rest = test::rest_positions(lattice);
   const VolumeEnergy energy(lattice, 1);

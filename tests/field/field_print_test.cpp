@@ -66,7 +66,7 @@ TEST(FieldPrint, Figure48OfTheThesis) {
   }
 }
 
-TEST(FieldPrint, AFlatSheetIsAsThickAsAVoxelUnlessToldOtherwise) {
+TEST(FieldPrint, FlatSheetIsOneVoxelThickByDefault) {
   FieldPrintSettings settings = at_z0();
   const Mesh sheet = shapes::rectangle(10, 6);
   EXPECT_EQ(rows_of(print_field(sheet, settings))[4][6], "-0.500");
@@ -87,7 +87,7 @@ TEST(FieldPrint, NeverPrintsMinusZero) {
   EXPECT_EQ(print_field(box, at_z0()).find("-0.000"), std::string::npos);
 }
 
-TEST(FieldPrint, SlicesLieExactlyWhereAsked) {
+TEST(FieldPrint, SlicesLieExactlyAtTheRequestedPlane) {
   const Mesh box = shapes::box(Vec3::Zero(), Vec3(4, 6, 2));
   FieldPrintSettings settings;
   settings.slice = Slice{0, 0.25};
@@ -137,7 +137,7 @@ TEST(FieldPrint, SamplesAreMultiplesOfTheWidthAlsoWhereItRounds) {
   ASSERT_EQ(rows[0].size(), 6u);  // 0.2 … 0.7
 }
 
-TEST(FieldPrint, RejectsWhatMakesNoSense) {
+TEST(FieldPrint, RejectsInvalidSettings) {
   const Mesh box = shapes::box(Vec3::Zero(), Vec3::Ones());
   FieldPrintSettings settings;
   settings.voxel_width = 0;

@@ -82,7 +82,7 @@ TEST(SignedDistance, SignIsRayParityOnClosedMeshes) {
   EXPECT_GT(inside, 300);
 }
 
-TEST(SignedDistance, AHoleDoesNotLoseTheInside) {
+TEST(SignedDistance, MeshWithAHoleHasAnInside) {
   const Mesh whole = shapes::sphere(1, 4);
   const Mesh holed = shapes::selected(
       whole, [](std::size_t f) { return f % 97 >= 3; }, none);
@@ -193,7 +193,7 @@ TEST(SampleField, ReportsProgressAndStopsWhenAsked) {
   }
 }
 
-TEST(SampleField, RejectsGridsThatMakeNoSense) {
+TEST(SampleField, RejectsInvalidGrids) {
   const SignedDistance distance(shapes::sphere(1, 1));
   EXPECT_THROW(sample_field(distance, {Vec3::Zero(), 0, Vec3i(2, 2, 2)}, 1), Error);
   EXPECT_THROW(sample_field(distance, {Vec3(NAN, 0, 0), 1, Vec3i(2, 2, 2)}, 1), Error);

@@ -21,7 +21,7 @@ StepContext step(double begin, double end) {
 const Window always{0, std::numeric_limits<double>::infinity()};
 const Keyed down{{{0, Vec3(0, -9.8, 0)}}};
 
-TEST(Gravity, PullsEveryMassAndStoresHeight) {
+TEST(Gravity, ActsOnEveryMassAndStoresHeight) {
   const Gravity gravity({1, 2, 0}, down, always);
   const auto potential = gravity.potential(step(0, 0.1));
   const std::vector<Vec3> x = {Vec3(5, 1, 0), Vec3(0, 3, 7), Vec3(0, 9, 0)};
@@ -51,7 +51,7 @@ TEST(Gravity, FollowsItsKeysAndItsWindow) {
   EXPECT_EQ(gravity.potential(step(2, 2.5)), nullptr);
 }
 
-TEST(PointForce, PullsTheListedVerticesEachWithTheWholeForce) {
+TEST(PointForce, ActsOnEachListedVertexWithTheFullForce) {
   const PointForce force({0, 2}, Keyed{{{0, Vec3(1, -2, 3)}}}, always);
   const std::vector<Vec3> x = test::random_vectors(4, 1, 2);
   const auto potential = force.potential(step(0, 0.1));

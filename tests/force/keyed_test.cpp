@@ -41,7 +41,7 @@ TEST(Window, SharesOfAllStepsAddUpToItsLength) {
   }
 }
 
-TEST(Window, RoundingOfTheClockLeavesNoSliver) {
+TEST(Window, RoundingOfTheClockIsSnapped) {
   double time = 0;
   for (int i = 0; i < 10; ++i) time += 0.1;
   ASSERT_NE(time, 1.0);

@@ -237,7 +237,7 @@ TEST(Wind, ActsOnlyInItsWindowAndFollowsItsKeys) {
   EXPECT_EQ(at(1, 1.25), 0);
 }
 
-TEST(Wind, DegenerateFacesAndStillAirGiveNothing) {
+TEST(Wind, DegenerateFacesAndStillAirExertNoForce) {
   EXPECT_EQ(force(blowing(Vec3(0, 7, 0)), resting(plate(0)), {Vec3i(0, 1, 1), Vec3i(2, 2, 2)}), Vec3::Zero());
   EXPECT_EQ(force(blowing(Vec3::Zero()), resting(plate(0)), plate_triangles), Vec3::Zero());
 }

@@ -83,7 +83,7 @@ TEST(ClosestPoint, EqualsBruteForceOnTinyAndHugeMeshes) {
 }
 
 // A soup of needles, doubled corners and points among proper triangles.
-TEST(ClosestPoint, TakesDegenerateTrianglesAsSegmentsAndPoints) {
+TEST(ClosestPoint, HandlesDegenerateTrianglesAsSegmentsAndPoints) {
   Mesh mesh;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -135,7 +135,7 @@ TEST(ClosestPoint, TiesGoToTheSmallestIndexWhateverTheHint) {
   }
 }
 
-TEST(ClosestPoint, LooksNoFartherThanAsked) {
+TEST(ClosestPoint, RespectsTheSearchDistance) {
   const Mesh mesh = shapes::box(Vec3::Zero(), Vec3::Ones());
   const ClosestPointQuery query(mesh.positions, triangulate(mesh).triangles);
   EXPECT_EQ(query(Vec3(3, 0.5, 0.5), 1.5).triangle, -1);
@@ -144,7 +144,7 @@ TEST(ClosestPoint, LooksNoFartherThanAsked) {
   EXPECT_EQ(query(Vec3(3, 0.5, 0.5), 1.5, 0).triangle, -1);
 }
 
-TEST(ClosestPoint, AnswersFromVeryFarAway) {
+TEST(ClosestPoint, IsExactFromVeryFarAway) {
   const Mesh mesh = shapes::box(Vec3::Zero(), Vec3::Ones());
   const ClosestPointQuery query(mesh.positions, triangulate(mesh).triangles);
   EXPECT_DOUBLE_EQ(query(Vec3(1e12, 0.5, 0.5)).distance, 1e12 - 1);

@@ -53,7 +53,7 @@ TEST(Inspect, CountsOpenFlippedAndNonManifoldEdges) {
   EXPECT_EQ(inspect(fin).open_edges, 2u);
 }
 
-TEST(Inspect, WarnsInsideOutDoubledDegenerateAndLoose) {
+TEST(Inspect, WarnsOfInvertedDuplicateDegenerateAndLooseParts) {
   Mesh mesh = cube();
   for (std::size_t f = 0; f < 6; ++f)
     std::reverse(mesh.face_vertices.begin() + static_cast<std::ptrdiff_t>(4 * f),
@@ -104,7 +104,7 @@ TEST(Inspect, CountsComponents) {
   EXPECT_DOUBLE_EQ(inspect(mesh).volume, 5);
 }
 
-TEST(RequireUsable, SaysWhatIsWrongAndWhere) {
+TEST(RequireUsable, ErrorsStateProblemAndPlace) {
   const auto complaint = [](const Mesh& mesh) -> std::string {
     try {
       require_usable(mesh, "flag.obj");

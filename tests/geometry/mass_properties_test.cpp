@@ -21,7 +21,7 @@ void expect_near(const MassProperties& a, const MassProperties& b, double relati
   EXPECT_LT((a.second_moment - b.second_moment).norm(), relative * b.second_moment.norm());
 }
 
-TEST(MassProperties, OfABoxAreExactAnywhereAndAtAnyTurn) {
+TEST(MassProperties, OfABoxAreExactForAnyPlacement) {
   Mesh mesh = box_mesh(Vec3(1, 2, 3), Vec3(0.5, 2, 0.01));
   const MassProperties box = box_mass(Vec3(1, 2, 3), Vec3(0.5, 2, 0.01));
   expect_near(of(mesh), box, 1e-13);
@@ -44,7 +44,7 @@ TEST(MassProperties, OfATetrahedronHaveTheClosedForm) {
   EXPECT_NEAR(mass.second_moment(1, 2), off, 1e-16);
 }
 
-TEST(MassProperties, OfSphereAndCapsuleAreThoseOfTheirMeshesToTheirFineness) {
+TEST(MassProperties, OfSphereAndCapsuleAgreeWithTheirMeshes) {
   // Inscribed meshes are a little smaller: 642 vertices of a sphere lose 0.9 % of its volume.
   expect_near(of(sphere_mesh(Vec3(1, 0, 0), 0.3)), sphere_mass(Vec3(1, 0, 0), 0.3), 0.02);
   const Vec3 a(0, 1, 0), b(1, 1.5, -0.3);
@@ -55,7 +55,7 @@ TEST(MassProperties, OfSphereAndCapsuleAreThoseOfTheirMeshesToTheirFineness) {
   EXPECT_NEAR(rod.second_moment(0, 0), rod.volume * 100 * 100 / 12, 1e-3 * rod.second_moment(0, 0));
 }
 
-TEST(Shapes, AreClosedFaceOutwardAndLieWhereTheyShould) {
+TEST(Shapes, AreClosedOutwardAndCorrectlyPlaced) {
   for (const Mesh& mesh : {sphere_mesh(Vec3(1, 2, 3), 0.5), capsule_mesh(Vec3(0, 0, 0), Vec3(0, 0, 1), 0.2),
                            box_mesh(Vec3(0, 1, 0), Vec3(1, 2, 3))}) {
     const MeshReport report = inspect(mesh);

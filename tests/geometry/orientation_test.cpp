@@ -17,26 +17,26 @@ double winding_at(const Mesh& mesh, const Vec3& p) {
 const auto all = [](std::size_t) { return true; };
 const auto none = [](std::size_t) { return false; };
 
-TEST(Orient, LeavesAGoodMeshAlone) {
+TEST(Orient, DoesNotChangeAConsistentMesh) {
   const Mesh mesh = shapes::sphere(1, 2);
   const OrientedTriangles result = oriented(mesh);
   EXPECT_TRUE(result.watertight);
   EXPECT_EQ(result.triangles, triangulate(mesh).triangles);
 }
 
-TEST(Orient, TurnsAnInsideOutMesh) {
+TEST(Orient, FlipsAnInvertedMesh) {
   const Mesh mesh = shapes::selected(shapes::sphere(1, 2), all, all);
   EXPECT_NEAR(winding_at(mesh, Vec3(0.1, 0.2, 0)), 1, 5e-3);
 }
 
-TEST(Orient, MendsRandomlyTurnedFaces) {
+TEST(Orient, RepairsRandomlyFlippedFaces) {
   const Mesh mesh = shapes::selected(shapes::sphere(1, 3), all, [](std::size_t f) { return f * 7 % 5 < 2; });
   const OrientedTriangles result = oriented(mesh);
   EXPECT_TRUE(result.watertight);
   EXPECT_NEAR(winding_at(mesh, Vec3(0.1, 0.2, 0)), 1, 5e-3);
 }
 
-TEST(Orient, KeepsACavityAlsoWhenAllIsInsideOut) {
+TEST(Orient, KeepsACavityOfAnInvertedMesh) {
   const Mesh inner = shapes::selected(shapes::sphere(0.5, 2), all, all);
   const Mesh hollow = shapes::joined(shapes::sphere(1, 2), inner);
   const Mesh turned = shapes::selected(hollow, all, all);
@@ -46,14 +46,14 @@ TEST(Orient, KeepsACavityAlsoWhenAllIsInsideOut) {
   }
 }
 
-TEST(Orient, TurnsASeparatePartThatIsInsideOut) {
+TEST(Orient, FlipsASeparateInvertedPart) {
   const Mesh other = shapes::selected(shapes::sphere(0.5, 2, Vec3(3, 0, 0)), all, all);
   const Mesh mesh = shapes::joined(shapes::sphere(1, 2), other);
   EXPECT_NEAR(winding_at(mesh, Vec3::Zero()), 1, 5e-3);
   EXPECT_NEAR(winding_at(mesh, Vec3(3, 0, 0)), 1, 5e-3);
 }
 
-TEST(Orient, SeesThroughVerticesSplitAtSeams) {
+TEST(Orient, JoinsVerticesSplitAtSeams) {
   Mesh split;  // every face with vertices of its own, every third one turned
   const Mesh whole = shapes::sphere(1, 2);
   for (std::size_t f = 0; f < whole.face_count(); ++f) {
@@ -68,7 +68,7 @@ TEST(Orient, SeesThroughVerticesSplitAtSeams) {
   EXPECT_NEAR(winding_at(split, Vec3::Zero()), 1, 5e-3);
 }
 
-TEST(Orient, KnowsThatAHoleIsNotWatertight) {
+TEST(Orient, MeshWithAHoleIsNotWatertight) {
   EXPECT_FALSE(oriented(shapes::selected(
                             shapes::sphere(1, 2), [](std::size_t f) { return f != 5; }, none))
                    .watertight);

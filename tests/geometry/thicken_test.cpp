@@ -27,7 +27,7 @@ bool closed_and_consistent(const Mesh& mesh) {
 const auto all = [](std::size_t) { return true; };
 const auto none = [](std::size_t) { return false; };
 
-TEST(IsClosed, TellsOpenFromClosed) {
+TEST(IsClosed, DistinguishesOpenAndClosedMeshes) {
   EXPECT_TRUE(is_closed(shapes::box(Vec3::Zero(), Vec3::Ones())));
   EXPECT_TRUE(is_closed(shapes::sphere(1, 1)));
   EXPECT_FALSE(is_closed(shapes::rectangle(1, 1)));
@@ -47,7 +47,7 @@ TEST(Thicken, AFlatRectangleBecomesExactlyABox) {
   }
 }
 
-TEST(Thicken, OneSideDownGivesTheSameSolid) {
+TEST(Thicken, FlippedSheetGivesTheSameSolid) {
   const Mesh flag = shapes::rectangle(10, 6, 5, 3);
   EXPECT_NEAR(volume(thicken(shapes::selected(flag, all, all), 0.2)), 12, 1e-12);
   const Mesh mixed = shapes::selected(flag, all, [](std::size_t f) { return f % 2 == 0; });
@@ -90,7 +90,7 @@ TEST(Thicken, AHemisphereIsClosedAlongItsRim) {
   EXPECT_NEAR(volume(solid), exact, 0.01 * exact);
 }
 
-TEST(Thicken, SheetsMeetingInOneEdgeGetSlabsOfTheirOwn) {
+TEST(Thicken, SheetsThatShareAnEdgeGetSeparateSlabs) {
   const Mesh fan =
       shapes::from({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}},
                    {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 1, 7, 6}});
@@ -123,7 +123,7 @@ TEST(Thicken, SurvivesFacesWithoutArea) {
   for (const Vec3& p : solid.positions) EXPECT_TRUE(p.allFinite());
 }
 
-TEST(Thicken, RejectsAThicknessThatMakesNoSense) {
+TEST(Thicken, RejectsInvalidThickness) {
   const Mesh flag = shapes::rectangle(1, 1);
   for (const double thickness : {0.0, -1.0, double(NAN), double(INFINITY)})
     EXPECT_THROW(thicken(flag, thickness), Error);

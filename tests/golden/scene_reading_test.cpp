@@ -425,7 +425,7 @@ void expect_golden(const std::string& name, const std::string& text) {
   EXPECT_EQ(i, now.size());
 }
 
-TEST(SceneReading, EveryMistakeIsAnsweredAsRecorded) {
+TEST(SceneReading, MessagesAreAsRecorded) {
   std::string record;
   for (const Text& scene : scenes) record += readings(scene, scene_reading);
   for (const Text& material : materials) record += readings(material, material_reading);

@@ -148,7 +148,7 @@ TEST(ObjReader, NamesTheLineOfEveryFault) {
   EXPECT_EQ(refused(good + "f 1 2 x\n", ".obj").place().column, 7);
 }
 
-TEST(MeshFile, RefusesWhatIsNoMesh) {
+TEST(MeshFile, RefusesFilesThatAreNotMeshes) {
   EXPECT_THAT(refused("", ".obj").what(), HasSubstr("empty"));
   EXPECT_THAT(refused(" \n\n", ".stl").what(), HasSubstr("empty"));
   EXPECT_THAT(refused("\x89PNG\r\n\x1a\n", ".obj").what(), HasSubstr("PNG"));
@@ -206,7 +206,7 @@ TEST(Ply, NamesTheLineOrTheFace) {
   EXPECT_EQ(refused(text, ".ply").place().line, 18);
 }
 
-TEST(Ply, NeverTrustsACount) {
+TEST(Ply, ChecksEveryCount) {
   for (const char* format : {"ascii", "binary_little_endian"}) {
     const std::string head = "ply\nformat " + std::string(format) + " 1.0\n";
     refused(
@@ -265,7 +265,7 @@ TEST(Gltf, ReadsNodesTransformsAndSeams) {
   }
 }
 
-TEST(Gltf, ChecksWhatTheFileSays) {
+TEST(Gltf, ChecksTheContentOfTheFile) {
   const auto with = [](const std::string& from, const std::string& to) {
     std::string text = fixtures::gltf();
     EXPECT_NE(text.find(from), text.npos) << from;
@@ -292,7 +292,7 @@ TEST(Collada, AppliesUnitAndAxis) {
   EXPECT_THAT(file.note, HasSubstr("float"));
 }
 
-TEST(Fbx, ReadsWhatAssimpWrites) {
+TEST(Fbx, ReadsFilesWrittenByAssimp) {
   const MeshFile file = read(fixtures::fbx(), ".fbx");
   EXPECT_EQ(file.mesh.positions.size(), 4u);
   EXPECT_EQ(file.mesh.face_count(), 1u);

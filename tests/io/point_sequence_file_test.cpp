@@ -42,7 +42,7 @@ std::string refusal(const std::string& bytes, const std::string& suffix) {
   return "";
 }
 
-TEST(PointSequence, ReadsWhatTheCachesHold) {
+TEST(PointSequence, ReadsPointCaches) {
   Scratch scratch;
   write_pc2(scratch / "a.pc2", 4, 2, frame_points);
   expect_moves(read_point_sequence(scratch / "a.pc2", 24), 24);

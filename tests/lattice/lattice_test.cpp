@@ -93,7 +93,7 @@ void expect_consistent(const Lattice& lattice) {
   EXPECT_EQ(lattice.find_vertex(lattice.extent + Vec3i::Ones()), -1);
 }
 
-TEST(Lattice, TheFlagHasSixtyVoxelsWhateverItsThickness) {
+TEST(Lattice, FlagHasSixtyVoxelsForAnyThickness) {
   for (double thickness : {1.0, 0.3, 0.1, 1e-4}) {
     const Lattice lattice = lattice_of(shapes::box({0, 0, -thickness / 2}, {10, 6, thickness / 2}), 1);
     EXPECT_EQ(lattice.voxel_count(), 60u);
@@ -106,7 +106,7 @@ TEST(Lattice, TheFlagHasSixtyVoxelsWhateverItsThickness) {
   }
 }
 
-TEST(Lattice, ABoxGivesItsVoxelsWhereverItLies) {
+TEST(Lattice, BoxHasTheSameVoxelsAnywhere) {
   // Widths that no double holds exactly, far from the origin: rounding must not add a layer.
   for (const Vec3& low : {Vec3(0, 0, 0), Vec3(0.3, -17.7, 123.456), Vec3(-1000.1, 0.7, 0.1)}) {
     const Mesh mesh = shapes::box(low, low + Vec3(1.5, 0.9, 0.3));
@@ -251,7 +251,7 @@ TEST(Lattice, MemoryGrowsWithTheKeptVoxels) {
   EXPECT_NEAR(filled_volume(lattice), 640, 0.5);
 }
 
-TEST(Lattice, AHopelessWidthIsToldAtOnce) {
+TEST(Lattice, HopelessWidthIsRefusedAtOnce) {
   const Mesh mesh = shapes::sphere(8);
   const SignedDistance distance(mesh);
   for (double width : {1e-4, 1e-9, 1e-30, 5e-324}) {
@@ -269,7 +269,7 @@ TEST(Lattice, AHopelessWidthIsToldAtOnce) {
     EXPECT_THROW(build_lattice(mesh, distance, {width}), Error);
 }
 
-TEST(Lattice, StopsWhenTold) {
+TEST(Lattice, StopsWhenCancelled) {
   const Mesh mesh = shapes::sphere(8);
   const SignedDistance distance(mesh);
   double last = 0;

@@ -247,7 +247,7 @@ TEST(LatticeModuli, VolumeConservationRaisesTheBulkModulusOnly) {
   EXPECT_NEAR(moduli.poisson, (3 * bulk - 800) / (6 * bulk + 800), 1e-9);
 }
 
-TEST(LatticeModuli, EdgesAloneResistPullButNotShear) {
+TEST(LatticeModuli, EdgesResistTensionButNotShear) {
   for (const Bracing bracing : {Bracing::kuhn, Bracing::full}) {
     const ElasticModuli moduli = elastic_moduli({5, 0, 0}, bracing);
     EXPECT_NEAR(moduli.youngs, 5, 1e-12);
@@ -257,7 +257,7 @@ TEST(LatticeModuli, EdgesAloneResistPullButNotShear) {
   }
 }
 
-TEST(LatticeModuli, SpringsForReachesWhatWasAskedFor) {
+TEST(LatticeModuli, SpringsForReachesTheRequestedModuli) {
   for (const Bracing bracing : {Bracing::kuhn, Bracing::full}) {
     for (const double youngs : {1.0, 2e11}) {
       for (const double ratio : {0.0, 1e-4, 0.05, 0.4, 0.9}) {
@@ -275,7 +275,7 @@ TEST(LatticeModuli, SpringsForReachesWhatWasAskedFor) {
   EXPECT_NEAR(isotropic.edge, isotropic.face_diagonal + 8 * isotropic.body_diagonal / 3, 1e-9);
 }
 
-TEST(LatticeModuli, SpringsForRejectsWhatSpringsCannotDo) {
+TEST(LatticeModuli, SpringsForRejectsUnreachableModuli) {
   const auto message = [](double youngs, std::optional<double> shear, Bracing bracing) -> std::string {
     try {
       springs_for(youngs, shear, bracing);

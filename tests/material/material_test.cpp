@@ -51,7 +51,7 @@ TEST(MaterialLibrary, HoldsEveryFileOfTheFolderAndEachParses) {
   EXPECT_EQ(files, names.size());
 }
 
-TEST(MaterialLibrary, AnUnknownNameIsAnErrorThatOffersTheNearest) {
+TEST(MaterialLibrary, UnknownNameIsAnErrorWithTheNearestName) {
   try {
     find_material("thesis_falg");
     FAIL();

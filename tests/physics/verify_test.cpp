@@ -32,13 +32,13 @@ INSTANTIATE_TEST_SUITE_P(Verify, QuickCase, testing::ValuesIn(quick_cases()), []
   return name;
 });
 
-TEST(Comparison, NothingPassesThatIsNoNumber) {
+TEST(Comparison, NaNFails) {
   EXPECT_FALSE((Comparison{"", 1, std::nan(""), 1e9}.passed()));
   EXPECT_TRUE((Comparison{"", 2, 2.1, 0.051}.passed()));
   EXPECT_FALSE((Comparison{"", 2, 2.1, 0.051, false}.passed()));
 }
 
-TEST(VerifyCases, HaveNamesOfTheirOwn) {
+TEST(VerifyCases, HaveUniqueNames) {
   std::set<std::string> names;
   for (const VerifyCase& c : verify_cases()) EXPECT_TRUE(names.insert(c.name).second) << c.name;
 }

@@ -31,7 +31,7 @@ TEST(Camera, SeesEveryPointAndTouchesTwoSides) {
   }
 }
 
-TEST(Camera, UpIsUpAndRightIsRight) {
+TEST(Camera, HasTheRightOrientation) {
   CameraFit fit({.azimuth = 0, .elevation = 10}, 1.5);
   fit.add(std::vector<Vec3>{Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   const Camera camera = fit.camera();
@@ -41,7 +41,7 @@ TEST(Camera, UpIsUpAndRightIsRight) {
   EXPECT_GT(camera.position.z(), 1);
 }
 
-TEST(Camera, NothingOrOnePointStillGivesACamera) {
+TEST(Camera, NoPointsOrOnePointGiveACamera) {
   CameraFit empty({}, 1);
   EXPECT_TRUE(empty.camera().position.allFinite());
   CameraFit one({}, 1);

@@ -70,7 +70,7 @@ TEST(Movie, MissingProgramIsAFileErrorWithARemedy) {
   }
 }
 
-TEST(Movie, AProgramThatDiesIsAFileErrorAndNoSignal) {
+TEST(Movie, ProgramThatDiesIsAFileErrorWithoutASignal) {
   const Folder folder;
   Movie movie(folder / "a.mp4", 640, 480, {.program = "false"});
   const Image image(640, 480);

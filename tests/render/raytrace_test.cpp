@@ -50,7 +50,7 @@ TEST(Raytrace, SilhouetteIsWhereTheCameraProjectsIt) {
   EXPECT_LT((seen.max() - expected.max()).cwiseAbs().maxCoeff(), 1.6);
 }
 
-TEST(Raytrace, GroundIsDarkerUnderAThing) {
+TEST(Raytrace, GroundIsDarkerUnderABody) {
   const Mesh mesh = testing::box(Vec3(-1, 0, -1), Vec3(1, 1, 1));
   SceneView scene;
   scene.surfaces.push_back(make_surface(mesh, solid_look(Vec3(0.8, 0.1, 0.1))));
@@ -177,7 +177,7 @@ TEST(Raytrace, BadInputIsAnError) {
   EXPECT_THROW(draw(scene, {mesh.positions}), Error);
 }
 
-TEST(Raytrace, AnEmptySceneIsBackgroundAndStopsWhenAsked) {
+TEST(Raytrace, EmptySceneIsBackgroundAndCancelStops) {
   SceneView scene;
   scene.ground = 0;
   Raytracer raytracer(scene, CameraFit({}, 1).camera(), {.width = 32, .height = 32, .samples = 1});

@@ -116,7 +116,7 @@ scale = 2
   EXPECT_EQ(json["contact"], nlohmann::json({{"distance", 0.003}, {"friction", 0.4}}));
 }
 
-TEST_F(ColliderModel, FrictionIsTheScenesUnlessABodyHasItsOwn) {
+TEST_F(ColliderModel, FrictionDefaultsToThatOfTheScene) {
   const Model model = build(cloth + R"(friction = 0.8
 [contact]
 friction = 0.45
@@ -154,7 +154,7 @@ friction = 0
   EXPECT_THAT(message(cloth + "friction = -0.1\n"), HasSubstr("`friction`"));
 }
 
-TEST_F(ColliderModel, APlaneThatTurnsGoesThroughThreePoints) {
+TEST_F(ColliderModel, RotatingPlanePassesThroughThreePoints) {
   const std::string floor = cloth + "[[collider]]\nshape = 'plane'\ncenter = [5, -1, 0]\nkeyframes = ";
   const Model turning = build(floor + "[{ time = 0, rotate = [0, 0, 10] }, { time = 1 }]\n");
   const ContactPlane& plane = turning.contact->surface->planes()[0];
@@ -249,7 +249,7 @@ TEST_F(ColliderModel, DensityMakesARigidBody) {
   EXPECT_THAT(describe_text(model), HasSubstr("collider ball: sphere, rigid body of 2.0944 kg"));
 }
 
-TEST_F(ColliderModel, MeshesHaveTheMassTheyEnclose) {
+TEST_F(ColliderModel, MeshesHaveTheMassOfTheirVolume) {
   const Model model =
       build("[[collider]]\nshape = 'mesh'\nmesh = 'box.obj'\nrotate = [0, 30, 0]\nscale = 2\ndensity = 10\n");
   EXPECT_NEAR(model.bodies[0].statistics.mass, 10 * 2 * 4 * 6, 1e-9);
@@ -289,7 +289,7 @@ TEST_F(ColliderModel, SequencesAreMeshesWhoseVerticesMove) {
               HasSubstr("it moves 4 points, box.obj has 8 vertices"));
 }
 
-TEST_F(ColliderModel, ContactIsOnWhereThereIsSomethingToTouch) {
+TEST_F(ColliderModel, ContactIsOnIfSurfacesCanTouch) {
   EXPECT_EQ(build(cloth).contact, nullptr);
   EXPECT_NE(build(cloth + "[contact]\n").contact, nullptr);
   EXPECT_EQ(build(cloth + "self_contact = false\n[contact]\n").contact, nullptr);
@@ -376,7 +376,7 @@ TEST_F(ColliderModel, AStartWithinTheContactDistanceIsAWarning) {
   EXPECT_THAT(build(sheet + "[contact]\ndistance = 1\n").warnings, testing::IsEmpty());
 }
 
-TEST_F(ColliderModel, WrongCollidersAreErrorsThatSayWhatToDo) {
+TEST_F(ColliderModel, WrongCollidersAreErrorsWithARemedy) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"name = 'a'\n", "[[collider]] a has no `shape`; add `shape = …`, one of `plane`, `sphere`"},
       {"shape = 'spher'\n", "did you mean `sphere`?"},

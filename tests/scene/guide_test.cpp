@@ -48,7 +48,7 @@ TEST(Guide, EveryExampleIsRead) {
   }
 }
 
-TEST(Guide, TablesAreThoseOfTheSchema) {
+TEST(Guide, TablesMatchTheSchema) {
   const std::string page = guide(), mark = "<!-- schema: ";
   const std::string printed = schema::markdown(scene_table());
   std::size_t blocks = 0;

@@ -79,7 +79,7 @@ TEST_F(ModelTest, TheFlagHasTheCountsOfTheThesis) {
   EXPECT_THAT(full.bodies[0].statistics.springs, ElementsAre(349, 512, 240));
 }
 
-TEST_F(ModelTest, SolidsWeighWhatTheyFillAndCellsCountFull) {
+TEST_F(ModelTest, SolidMassFollowsTheFillAndCellMassDoesNot) {
   const Model solid = build(body("thin.obj"));
   EXPECT_NEAR(solid.bodies[0].statistics.mass, 10 * 10 * 6 * 0.25, 1e-6);
   const Model cells = build(body("thin.obj", "mass = 'cells'\n"));
@@ -106,7 +106,7 @@ TEST_F(ModelTest, ASpringsConstantIsModulusTimesWidthTimesWeight) {
               1e-6);
 }
 
-TEST_F(ModelTest, NothingPullsAtRest) {
+TEST_F(ModelTest, NoForcesAtRest) {
   const Model model = build(
       "[[body]]\nmesh = 'box.obj'\nvoxel_width = 1\n[body.material]\nbase = 'thesis_flag'\nvolume_modulus = "
       "10\n");
@@ -117,7 +117,7 @@ TEST_F(ModelTest, NothingPullsAtRest) {
   for (const Vec3& f : force) EXPECT_LT(f.norm(), 1e-9);
 }
 
-TEST_F(ModelTest, ThePlacementScalesTurnsAndMoves) {
+TEST_F(ModelTest, PlacementScalesRotatesAndTranslates) {
   const Model model = build(body("box.obj", "scale = 0.5\nrotate = [0, 0, 90]\ntranslate = [100, 0, 0]\n"));
   const Box bounds = model.bodies[0].mesh.bounds();
   EXPECT_EQ(bounds.min(), Vec3(97, 0, 0));
@@ -151,7 +151,7 @@ TEST_F(ModelTest, AGroupIsHeldByTheVerticesThatCarryIt) {
   EXPECT_THAT(message(body("box.obj", "[[pin]]\nwhere = { group = 'left' }\n")), HasSubstr("group"));
 }
 
-TEST_F(ModelTest, AnEmptySelectionSaysWhatIsNearest) {
+TEST_F(ModelTest, EmptySelectionNamesTheNearestVertex) {
   EXPECT_THAT(
       message(
           body("box.obj", "[[pin]]\nname = 'p'\nwhere = { sphere = { center = [12, 6, 1], radius = 1 } }\n")),
@@ -246,7 +246,7 @@ TEST_F(ModelTest, WarnsOfStepsThatAreTooLongForSymplecticEuler) {
   EXPECT_THAT(coarse.warnings, ElementsAre(HasSubstr("symplectic_euler is unstable")));
 }
 
-TEST_F(ModelTest, ASheetWithoutThicknessIsAVoxelThickAndSaysSo) {
+TEST_F(ModelTest, SheetWithoutThicknessIsOneVoxelThickWithAWarning) {
   const Model model = build(body("sheet.obj"));
   EXPECT_TRUE(model.bodies[0].sheet);
   EXPECT_EQ(as_lattice(model.bodies[0])->thickness, 1);

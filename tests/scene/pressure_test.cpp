@@ -119,7 +119,7 @@ TEST(PressureScene, ResolvedSceneHasItsDefaults) {
   EXPECT_EQ(json["atmosphere"], 101325);
 }
 
-TEST(PressureScene, RefusesWhatCannotBe) {
+TEST(PressureScene, RefusesImpossiblePressures) {
   EXPECT_THAT(message("[[pressure]]\n"), HasSubstr("pressure"));
   EXPECT_THAT(message("[[pressure]]\npressure = 'much'\n"), HasSubstr("pressure"));
   EXPECT_THAT(message("[[pressure]]\npressure = 1e12\n"), HasSubstr("pressure"));
@@ -134,7 +134,7 @@ TEST(PressureScene, RefusesWhatCannotBe) {
   EXPECT_THAT(message("[[pressure]]\npressure = 1\ngas = true\n", "square"), HasSubstr("no volume"));
 }
 
-TEST(PressureScene, WarnsOfLids) {
+TEST(PressureScene, WarnsOfClosedHoles) {
   const Model model = build_model(read("[[pressure]]\npressure = 1\n", "square"));
   EXPECT_THAT(model.warnings, testing::Contains(HasSubstr("flat lids close a hole")));
 }

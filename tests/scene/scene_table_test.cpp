@@ -40,7 +40,7 @@ TEST(SceneTable, EveryKeyIsDescribedReadAndUnique) {
   EXPECT_GT(tables.size(), 15u);
 }
 
-TEST(SceneTable, ColoursTitlesAndWhatBodiesDoNotConsistOfMayChangeOnResume) {
+TEST(SceneTable, ColoursTitlesAndSettingsOutsideBodiesMayChangeOnResume) {
   for (const char* path :
        {"title", "time.duration", "time.steps_per_frame", "solver.effort", "contact.distance",
         "pin.0.where.nearest.1", "pin.-", "force.1", "probe.0.at.2", "body.0.colour.2", "body.1.friction",

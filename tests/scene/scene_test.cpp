@@ -38,7 +38,7 @@ std::string message(const std::string& text, const std::vector<std::string>& ove
   return "no error";
 }
 
-TEST(Scene, DefaultsFillWhatIsNotWritten) {
+TEST(Scene, MissingKeysHaveDefaults) {
   const Scene scene = parse(flag_body);
   EXPECT_EQ(scene.title, "scene");
   EXPECT_EQ(scene.time.duration, 2);
@@ -235,7 +235,7 @@ TEST(Scene, WarnsOfSettingsThatTheIntegratorDoesNotUse) {
               ElementsAre(HasSubstr("`linear_tolerance`"), HasSubstr("`tolerance`"), HasSubstr("`effort`")));
 }
 
-TEST(Scene, TheOnlyBodyNeedsNoMention) {
+TEST(Scene, OnlyBodyIsTheDefault) {
   const Scene scene =
       parse(flag_body + "[[pin]]\nwhere = { nearest = [0, 0, 0] }\n[[probe]]\nat = [0, 0, 0]\n");
   EXPECT_EQ(scene.pins[0].body, "flag");
@@ -319,7 +319,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{flag_body + "[[probe]]\nname = 'a'\nat = [0, 0, 0]\n[[probe]]\nname = 'a'\nat = [0, 0, 0]\n",
               "two of [[probe]] called `a`"}));
 
-TEST(Scene, YoungsModulusStandsInPlaceOfTheThreeModuli) {
+TEST(Scene, YoungsModulusReplacesTheThreeModuli) {
   const std::string body = "[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nbracing = 'full'\n[body.material]\n";
   // Full bracing with the standard shear modulus is isotropic: k1 = k2 + 8 k3 / 3 and E = 2.5 (k2 + 4 k3 /
   // 3).
@@ -333,14 +333,14 @@ TEST(Scene, YoungsModulusStandsInPlaceOfTheThreeModuli) {
   EXPECT_THAT(message(body + "density = 1\nedge_modulus = 1\nshear_modulus = 1\n"), HasSubstr("give both"));
 }
 
-TEST(Scene, SeveralBodiesMustBeToldApart) {
+TEST(Scene, SeveralBodiesMustBeNamed) {
   const std::string two = flag_body + "[[body]]\nmesh = 'b.obj'\nvoxel_width = 1\nmaterial = 'thesis_flag'\n";
   EXPECT_EQ(parse(two).bodies[1].name, "b");
   EXPECT_THAT(message(two + "[[pin]]\nwhere = { nearest = [0, 0, 0] }\n"), HasSubstr("one of `flag`, `b`"));
   EXPECT_EQ(message(two + "[[force]]\ntype = 'gravity'\n"), "no error");
 }
 
-TEST(Scene, LegalButOddSettingsAreWarnings) {
+TEST(Scene, UnusualSettingsAreWarnings) {
   const Scene scene = parse(
       "[[body]]\nmesh = 'a.obj'\nvoxel_width = 1\nthreshold = 0.3\n"
       "material = { density = 1, edge_modulus = 1 }\n");
@@ -394,7 +394,7 @@ TEST(Override, ErrorsNameTheOverride) {
   EXPECT_THAT(message(flag_body, {"time..duration=2"}, ErrorKind::usage), HasSubstr("this is not KEY=VALUE"));
 }
 
-TEST(Scene, AMaterialFileStandsBesideTheScene) {
+TEST(Scene, MaterialFileIsRelativeToTheScene) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("muslin_scene_material_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);

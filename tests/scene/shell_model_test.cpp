@@ -106,7 +106,7 @@ TEST_F(ShellModel, ProbesLieOnTriangles) {
               testing::ElementsAre(HasSubstr("lies 1 m from body")));
 }
 
-TEST_F(ShellModel, RestMeshIsWithoutStress) {
+TEST_F(ShellModel, RestMeshHasNoStress) {
   const Model flat = build(body("bent.obj", "rest_mesh = 'sheet.obj'\n"));
   const Model bent = build(body("bent.obj"));
   EXPECT_GT(flat.potentials[1].potential->value(flat.rest_positions), 1e-6);
@@ -115,7 +115,7 @@ TEST_F(ShellModel, RestMeshIsWithoutStress) {
               testing::AllOf(HasSubstr("scene.toml:6:13"), HasSubstr("its polygons are not those of")));
 }
 
-TEST_F(ShellModel, WarpTurnsWithTheBody) {
+TEST_F(ShellModel, WarpRotatesWithTheBody) {
   const std::string anisotropic =
       "[[body]]\nname = 'cloth'\nmesh = 'sheet.obj'\nmodel = 'shell'\nmaterial = { areal_density = 0.5, "
       "membrane_warp = 100, membrane_weft = 10, bending_warp = 1e-4 }\n";
@@ -131,7 +131,7 @@ TEST_F(ShellModel, WarpTurnsWithTheBody) {
   EXPECT_THAT(build(anisotropic).warnings, testing::ElementsAre(HasSubstr("its warp is taken along x")));
 }
 
-TEST_F(ShellModel, StretchLimitIsATermOfItsOwn) {
+TEST_F(ShellModel, StretchLimitIsASeparateTerm) {
   const Model model = build(body("sheet.obj", "stretch_limit = 1.08\n"));
   EXPECT_EQ(model.scene.bodies[0].stretch_limit, 1.08);
   EXPECT_EQ(nlohmann::json::parse(model.scene.resolved)["body"][0]["stretch_limit"], 1.08);
@@ -187,7 +187,7 @@ TEST_F(ShellModel, IsDescribed) {
   EXPECT_THAT(describe_text(model), HasSubstr("20 vertices, 24 triangles, 29 hinges"));
 }
 
-TEST_F(ShellModel, PinsThatHoldFromTheStartAndForEverClamp) {
+TEST_F(ShellModel, PinsThatHoldDuringTheWholeRunClamp) {
   const auto bending = [&](const std::string& pin) {
     const Model model = build(body() + pin);
     const auto is_bending = [](const PotentialTerm& term) { return term.name == "cloth: bending"; };
@@ -202,7 +202,7 @@ TEST_F(ShellModel, PinsThatHoldFromTheStartAndForEverClamp) {
   EXPECT_EQ(bending(all + "from = 0.5\n"), free);
 }
 
-TEST_F(ShellModel, SaysWhatIsWrongAndWhere) {
+TEST_F(ShellModel, ErrorsStateProblemAndPlace) {
   EXPECT_THAT(message(body("double.obj")),
               testing::AllOf(HasSubstr("scene.toml:3:8"), HasSubstr("double.obj: polygons 1 and 13"),
                              HasSubstr("delete double polygons")));

@@ -56,7 +56,7 @@ class SolidScene : public testing::Test {
   }
 };
 
-TEST_F(SolidScene, TakesThePlaceOfSprings) {
+TEST_F(SolidScene, ReplacesSprings) {
   EXPECT_THAT(names(build("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5 }")),
               testing::ElementsAre("block: solid"));
   EXPECT_THAT(names(build("{ base = 'rubber', law = 'neo_hookean', youngs_modulus = 1e5 }")),
@@ -99,7 +99,7 @@ TEST_F(SolidScene, ResolvedSceneShowsTheKeysOfSolidsOnly) {
   EXPECT_FALSE(of("'rubber'").contains("law"));
 }
 
-TEST_F(SolidScene, RefusesWhatItCannotBe) {
+TEST_F(SolidScene, RefusesInvalidMaterials) {
   EXPECT_THAT(message("{ density = 1000, law = 'neo_hookean', youngs_modulus = -1 }"),
               HasSubstr("youngs_modulus"));
   EXPECT_THAT(message("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5, poisson = 0.5 }"),
@@ -116,13 +116,13 @@ TEST_F(SolidScene, RefusesWhatItCannotBe) {
   EXPECT_THAT(message("{ density = 1000 }"), HasSubstr("edge_modulus"));
 }
 
-TEST_F(SolidScene, ValidateRefusesRatiosThatNoReaderSaw) {
+TEST_F(SolidScene, ValidateRefusesInvalidRatios) {
   Scene scene = read("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5 }");
   scene.bodies[0].material.poisson = 0.5;
   EXPECT_THROW(validate(scene), Error);
 }
 
-TEST_F(SolidScene, StepsConvergeAloneAndBesideAnotherBody) {
+TEST_F(SolidScene, StepsConvergeAloneAndWithAnotherBody) {
   const std::string more =
       "contact = false\n[[pin]]\nbody = 'block'\nwhere = { plane = { point = [0, 0, 0], normal = [1, 0, 0], "
       "distance = 0.01 "
@@ -148,7 +148,7 @@ TEST_F(SolidScene, StepsConvergeAloneAndBesideAnotherBody) {
   }
 }
 
-TEST_F(SolidScene, MirroredBlockComesBackToRest) {
+TEST_F(SolidScene, MirroredBlockReturnsToRest) {
   // Every element starts inverted; no step fails, and the block is at rest in the end.
   const auto model =
       std::make_shared<const Model>(build("{ density = 1000, law = 'neo_hookean', youngs_modulus = 1e5, "

@@ -61,7 +61,7 @@ at = [0, 0, 0]
 
 TEST(Validate, AcceptsASceneThatTheReaderAccepts) { EXPECT_NO_THROW(validate(sound_scene())); }
 
-TEST(Validate, AcceptsAProbeOnAColliderThatStandsStill) {
+TEST(Validate, AcceptsAProbeOnAStaticCollider) {
   Scene scene = sound_scene();
   scene.probes[0].body = "ground";
   EXPECT_NO_THROW(validate(scene));

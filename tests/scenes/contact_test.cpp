@@ -85,7 +85,7 @@ TEST(FoldOnFloor, LiesInFoldsOnTheFloor) {
   EXPECT_LT(run.highest("cloth"), 0.5);
 }
 
-TEST(RotatingSphere, TakesTheClothAlong) {
+TEST(RotatingSphere, DragsTheClothAlong) {
   Watched run("rotating_sphere", {coarse});
   ASSERT_TRUE(run.until(1.2));
   const auto angle = [&] { return std::atan2(-run.probe("on the ball").z(), run.probe("on the ball").x()); };
@@ -155,7 +155,7 @@ TEST(FlagBall, CatchesTheBallWhichRolls) {
   EXPECT_GT(run.simulation().diagnostics().min_distance, 0);
 }
 
-TEST(FlagOnPole, SlidesOffWithLittleFrictionAndStaysWithMuch) {
+TEST(FlagOnPole, SlidesOffWithLowFrictionAndStaysWithHigh) {
   // It lies 3 m to one side and 7 m to the other: friction holds it if exp(mu pi) is above their ratio.
   Watched smooth("flag_on_pole"), rough("flag_on_pole", {"contact.friction=0.6"});
   ASSERT_TRUE(smooth.until(3));
@@ -178,7 +178,7 @@ TEST(LatticeOnStairs, ComesToRestOnAStep) {
   EXPECT_NEAR(lowest, -0.07 * step, 0.003);
 }
 
-TEST(CurtainWalk, GivesWay) {
+TEST(CurtainWalk, PanelsArePushedAside) {
   Watched run("curtain_walk");
   const auto farthest = [&] {
     double z = -INFINITY;

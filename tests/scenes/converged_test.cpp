@@ -84,7 +84,7 @@ class FirstTouch : public testing::TestWithParam<Touch> {
 
 class ExactContact : public FirstTouch {};
 
-TEST_P(ExactContact, SolvesEveryStepAndCrossesInNone) {
+TEST_P(ExactContact, ConvergesInEveryStepWithoutCrossings) {
   const Touch& touch = GetParam();
   const Watched watched = watch(touch, {exact_});
   int touching = 0;
@@ -98,7 +98,7 @@ TEST_P(ExactContact, SolvesEveryStepAndCrossesInNone) {
   EXPECT_GE(touching, touch.touching);
 }
 
-TEST_P(ExactContact, WithoutItTheSameStepsCross) {
+TEST_P(ExactContact, SameStepsCrossWithoutContact) {
   std::vector<std::string> none;
   for (std::size_t b = 0; b < model_->scene.bodies.size(); ++b)
     none.push_back(fmt::format("body.{}.contact=false", b));
@@ -109,7 +109,7 @@ TEST_P(ExactContact, WithoutItTheSameStepsCross) {
 
 class DraftContact : public FirstTouch {};
 
-TEST_P(DraftContact, LeavesMoreThanExactContact) {
+TEST_P(DraftContact, HasLargerErrorsThanExactContact) {
   const auto largest = [&](const std::string& effort) {
     double error = 0;
     for (const Diagnostics& row : watch(GetParam(), {effort}).rows) error = std::max(error, row.error);

@@ -17,7 +17,7 @@ double volume(const SceneRun& run) {
   return six / 6;
 }
 
-TEST(Cushion, FillsUpUnderTheBallWithoutACrossing) {
+TEST(Cushion, InflatesUnderTheBallWithoutCrossings) {
   SceneRun run("cushion.toml", {"solver.effort=draft"});
   const double before = volume(run);
   run.until_frame(18);

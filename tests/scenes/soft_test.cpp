@@ -46,7 +46,7 @@ TEST(NylonFlag, StreamsDownwind) {
   EXPECT_LT(free_edge({coarse, quick, "force.1.velocity=[-7, 0, -1.5]"}, 18), -0.5);
 }
 
-TEST(JellyBear, GivesWayAndStandsUpAgain) {
+TEST(JellyBear, DeformsAndRecovers) {
   SceneRun run("jelly_bear.toml", {"body.bear.voxel_width=0.007", "time.steps_per_frame=3"});
   double farthest = 0;
   for (int frame = 1; frame <= 44; ++frame) {

@@ -12,7 +12,7 @@ namespace {
 
 bool near_to(double a, double b) { return std::abs(a - b) < 1e-9; }
 
-TEST(Thesis1Rest, NothingMovesToTheLastBit) {
+TEST(Thesis1Rest, NothingMoves) {
   SceneRun run("thesis/1_rest.toml");
   run.until_frame(12);
   EXPECT_EQ(run.now(), run.rest());
@@ -30,7 +30,7 @@ TEST(Thesis2TwoCorners, MiddleOfTheLowerEdgeHangsLowest) {
   EXPECT_LT(run.probe("middle of the lower edge").y(), -2);
 }
 
-TEST(Thesis2TwoCorners, SkinAndContourFallAlike) {
+TEST(Thesis2TwoCorners, SkinAndContourFallTogether) {
   SceneRun run("thesis/2_two_corners.toml");
   run.until_frame(24);
   const LatticeBody& body = run.lattice_body();
@@ -46,7 +46,7 @@ TEST(Thesis2TwoCorners, SkinAndContourFallAlike) {
   EXPECT_LT(mean(body.skin).y(), 2.5);  // 3 at rest
 }
 
-TEST(Thesis3CentreBlown, LeftEdgeGoesWhereTheForcePoints) {
+TEST(Thesis3CentreBlown, LeftEdgeMovesAlongTheForce) {
   SceneRun run("thesis/3_centre_blown.toml");
   run.until_frame(24);
   EXPECT_TRUE(run.held_are_still());
@@ -68,7 +68,7 @@ TEST(Thesis4LeftEdge, FreeSideHangsLowest) {
   EXPECT_LT(run.probe("upper right corner").y(), 3);
 }
 
-TEST(Thesis5HorizontalPole, CornersFallWhenTheyAreLetGo) {
+TEST(Thesis5HorizontalPole, CornersFallWhenReleased) {
   SceneRun run("thesis/5_horizontal_pole.toml");
   run.until_frame(23);
   EXPECT_TRUE(run.held_are_still());
@@ -81,7 +81,7 @@ TEST(Thesis5HorizontalPole, CornersFallWhenTheyAreLetGo) {
   EXPECT_GT(run.rest_of_lowest().x(), 5);
 }
 
-TEST(Thesis6Lifted, StaysHigherThanWithoutTheLift) {
+TEST(Thesis6Lifted, IsHigherThanWithoutTheLift) {
   SceneRun plain("thesis/5_horizontal_pole.toml"), lifted("thesis/6_horizontal_pole_lifted.toml");
   const auto everything = [](const Vec3&) { return true; };
   for (const int frame : {8, 16}) {
@@ -96,7 +96,7 @@ TEST(Thesis6Lifted, StaysHigherThanWithoutTheLift) {
   EXPECT_LT(corner.y(), -1);
 }
 
-TEST(Thesis7Ball, CentreSinksBetweenStillCorners) {
+TEST(Thesis7Ball, CentreSinksBetweenFixedCorners) {
   SceneRun run("thesis/7_ball.toml");
   run.until_frame(24);
   EXPECT_TRUE(run.held_are_still());
@@ -106,7 +106,7 @@ TEST(Thesis7Ball, CentreSinksBetweenStillCorners) {
   EXPECT_NEAR(lowest.z(), 3, 1e-9);
 }
 
-TEST(Thesis7Ball, IsSymmetricWhereTheBracingIs) {
+TEST(Thesis7Ball, HasTheSymmetryOfItsBracing) {
   SceneRun run("thesis/7_ball.toml", {"body.flag.bracing=full", "solver.tolerance=1e-9"});
   run.until_frame(18);
   EXPECT_LT(run.probe("centre").y(), -0.1);

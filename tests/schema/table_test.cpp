@@ -162,7 +162,7 @@ TEST(Schema, WritesEveryValueWithItsDefault) {
       "drive": "motor", "power": 2.0, "brake": true, "axis": [1.0, 0.0, 0.0], "frames": []}]})"));
 }
 
-TEST(Schema, SaysWhatMayChangeOnResume) {
+TEST(Schema, StatesWhichKeysMayChangeOnResume) {
   EXPECT_TRUE(may_change_on_resume(cart_table(), "title"));
   EXPECT_TRUE(may_change_on_resume(cart_table(), "wheel.0.power"));
   EXPECT_FALSE(may_change_on_resume(cart_table(), "wheel.0.radius"));

@@ -65,14 +65,14 @@ TEST(Shell, ThreadsFollowTheTexture) {
   }
 }
 
-TEST(Shell, FaceAcrossTheWarpTakesAnother) {
+TEST(Shell, FacePerpendicularToTheWarpGetsAnotherDirection) {
   Mesh mesh = test::flat_sheet(1, 1, 1, 1);
   const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitY()});
   EXPECT_EQ(shell.odd_faces, 2U);
   EXPECT_TRUE(shell.inverses[0].allFinite());
 }
 
-TEST(Shell, RestShapeMayBeAnother) {
+TEST(Shell, RestShapeMayDiffer) {
   const Mesh mesh = test::flat_sheet(4, 4, 1, 1);
   const std::vector<Vec3> rest = test::rolled(mesh.positions, 2);
   const Shell shell = build_shell(mesh, rest, along_x);
@@ -93,7 +93,7 @@ TEST(Shell, EdgeOfThreeTrianglesHasTwoHingesWithTheFirst) {
   EXPECT_NEAR(std::abs(shell.hinges[1].angle), std::numbers::pi / 2, 1e-12);
 }
 
-TEST(Shell, SaysWhatIsWrongWithTheMesh) {
+TEST(Shell, ErrorsDescribeTheDefect) {
   Mesh twice = test::flat_sheet(2, 1, 1, 1);
   twice.add_face(std::array{0, 3, 4});
   EXPECT_THAT(problem(twice), HasSubstr("polygons 1 and 3 both have the triangle of vertices"));

@@ -40,7 +40,7 @@ double distance(const std::vector<std::vector<Vec3>>& a, const std::vector<std::
   return largest;
 }
 
-TEST(Accuracy, EffortsAreNearTheTightSolutionUpToTheFirstFolds) {
+TEST(Accuracy, EffortsHaveTheirAccuracyUpToTheFirstFolds) {
   SolverSettings tight;
   tight.effort = Effort::exact;
   tight.tolerance = 1e-5;

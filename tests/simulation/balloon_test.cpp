@@ -59,7 +59,7 @@ double holding_pressure(double stretch) {
   return stiffness / (1 - poisson) * (stretch * stretch - 1) / (stretch * radius);
 }
 
-TEST(Balloon, ComesToRestWhereLaplacesLawHolds) {
+TEST(Balloon, RestsAtTheRadiusOfLaplacesLaw) {
   const double rest_volume = Balloon({1000, 0, 0}).volume->value(test::ball(14, radius).x);
   for (const Gas& gas : {Gas{1000, 0, 0}, Gas{20000, 101325, rest_volume}}) {
     Balloon balloon(gas);

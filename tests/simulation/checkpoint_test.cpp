@@ -20,7 +20,7 @@ std::vector<std::uint8_t> example() {
   return std::move(out).finish();
 }
 
-TEST(Checkpoint, GivesBackWhatWasWrittenInAnyOrder) {
+TEST(Checkpoint, ReadsArraysInAnyOrder) {
   const auto bytes = example();
   const CheckpointHeader header = read_checkpoint_header(bytes);
   EXPECT_EQ(header.fingerprint, 42u);
@@ -44,7 +44,7 @@ TEST(Checkpoint, GivesBackWhatWasWrittenInAnyOrder) {
   EXPECT_TRUE(none.empty());
 }
 
-TEST(Checkpoint, LeavesWhatWasNotWrittenAsItIs) {
+TEST(Checkpoint, DoesNotChangeArraysThatWereNotWritten) {
   const auto bytes = example();
   CheckpointReader in(bytes);
   double width = 3;
@@ -55,7 +55,7 @@ TEST(Checkpoint, LeavesWhatWasNotWrittenAsItIs) {
   EXPECT_EQ(anchors.size(), 1U);
 }
 
-TEST(Checkpoint, RefusesOtherTypesAndManyForOne) {
+TEST(Checkpoint, RefusesOtherTypesAndCounts) {
   const auto bytes = example();
   CheckpointReader in(bytes);
   std::int64_t whole = 0;
@@ -66,7 +66,7 @@ TEST(Checkpoint, RefusesOtherTypesAndManyForOne) {
   EXPECT_THROW(in("positions", one), Error);
 }
 
-TEST(Checkpoint, RefusesANameThatIsThereTwice) {
+TEST(Checkpoint, RefusesADuplicateName) {
   CheckpointWriter out({});
   out("length", 0.1);
   out("length", 0.2);
@@ -85,7 +85,7 @@ TEST(Checkpoint, RefusesAnOlderFormatByItsNumber) {
   }
 }
 
-TEST(Checkpoint, NoticesEveryDamagedByteAndEveryCut) {
+TEST(Checkpoint, DetectsEveryDamagedByteAndEveryTruncation) {
   const auto good = example();
   for (std::size_t i = 0; i < good.size(); ++i) {
     auto bad = good;

@@ -95,7 +95,7 @@ TEST(ContactMotion, ABallRollsDownASlopeAtFiveSeventhsOfItsFall) {
   EXPECT_NEAR(distance_down(slope, 0.05), slips, 0.01 * slips);
 }
 
-TEST(ContactMotion, ATurningBallTakesClothAlong) {
+TEST(ContactMotion, RotatingBallDragsCloth) {
   test::ContactScene scene;
   scene.friction = 0.5;
   test::ClothGrid cloth(9, 9, 0.025);
@@ -119,7 +119,7 @@ TEST(ContactMotion, ATurningBallTakesClothAlong) {
 }
 
 /// A strip that stands in a sheet, drawn out of it and pushed back to where it was.
-TEST(ContactMotion, TangledSheetsPartForEver) {
+TEST(ContactMotion, TangledSheetsSeparateForGood) {
   test::ContactScene scene;
   test::ClothGrid sheet(11, 11, 0.03), strip(5, 5, 0.03);
   scene.add_cloth(sheet);
@@ -160,7 +160,7 @@ TEST(ContactMotion, TangledSheetsPartForEver) {
 
 /// Cloth that falls on a ball: the balance changes by the work of what is left out of balance, which is next to
 /// nothing where steps are solved exactly.
-TEST(ContactMotion, TheBalanceChangesByTheWorkOfWhatIsOutOfBalance) {
+TEST(ContactMotion, BalanceChangesByTheWorkOfTheResiduals) {
   for (const double tolerance : {0.01, 1e-6}) {
     test::ContactScene scene;
     scene.model.scene.solver.tolerance = tolerance;
@@ -183,7 +183,7 @@ TEST(ContactMotion, TheBalanceChangesByTheWorkOfWhatIsOutOfBalance) {
   }
 }
 
-TEST(ContactMotion, AColliderThatCannotGoOnIsHeldBack) {
+TEST(ContactMotion, BlockedColliderIsHeldBack) {
   // A ball pressed down on a fixed sheet of held vertices.
   test::ContactScene scene;
   test::ClothGrid sheet(9, 9, 0.05);

@@ -68,7 +68,7 @@ TEST(ContactRun, TheBalanceOfEnergyCloses) {
   EXPECT_GT(simulation.diagnostics().dissipated, 0);
 }
 
-TEST(ContactRun, GoesOnFromACheckpointBitForBit) {
+TEST(ContactRun, ResumesFromACheckpointBitForBit) {
   for (const Effort effort : {Effort::exact, Effort::normal}) {
     const auto model = drop(12, effort);
     Simulation whole(model);
@@ -84,7 +84,7 @@ TEST(ContactRun, GoesOnFromACheckpointBitForBit) {
   }
 }
 
-TEST(ContactRun, GoesOnFromAnyFrameOfAFall) {
+TEST(ContactRun, ResumesFromAnyFrameOfAFall) {
   // Points leave the boxes that candidates were found for within steps, and are searched for alone: nothing
   // of that may outlive the step.
   const auto model = drop(16, Effort::normal);
@@ -98,7 +98,7 @@ TEST(ContactRun, GoesOnFromAnyFrameOfAFall) {
   }
 }
 
-TEST(ContactRun, PositionsPutByHandAreCheckedAndTouchNothingOld) {
+TEST(ContactRun, SetPositionsAreCheckedAndResetContact) {
   const auto model = drop(12, Effort::exact);
   Simulation simulation(model);
   for (int frame = 0; frame < 12; ++frame) simulation.advance();
@@ -129,7 +129,7 @@ TEST(ContactRun, PositionsPutByHandAreCheckedAndTouchNothingOld) {
   EXPECT_EQ(resumed.checkpoint(), simulation.checkpoint());
 }
 
-TEST(ContactRun, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(ContactRun, HasTheSameBitsOnAnyNumberOfThreads) {
   const auto model = drop(20, Effort::normal);
   std::vector<std::vector<Vec3>> ends;
   for (const int threads : {1, 2}) {

@@ -52,7 +52,7 @@ TEST_P(Balance, ClosesWithDampingLoadsAndMovingPins) {
   EXPECT_LT(drift.largest, 1e-6);  // of energies around 1000 J
 }
 
-TEST(EnergyBalance, AStepThatDoesNotObeyItsEquationBreaksIt) {
+TEST(EnergyBalance, StepThatViolatesItsEquationBreaksIt) {
   SmallModelOptions options;
   Model model = small_model(options);
   State before;

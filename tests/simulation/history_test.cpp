@@ -64,7 +64,7 @@ struct Fold {
   }
 };
 
-TEST(PlasticHinges, YieldedHingeKeepsItsAngleLessTheYieldAngle) {
+TEST(PlasticHinges, YieldedHingeKeepsItsAngleMinusTheYieldAngle) {
   for (const double hardening : {0.0, 0.5}) {
     const Fold f(hardening);
     Simulation simulation(f.model);
@@ -116,7 +116,7 @@ TEST(History, ResumedRunHasTheSameBits) {
   EXPECT_EQ(whole.checkpoint(), resumed.checkpoint());
 }
 
-TEST(History, FailedStepLeavesItAsItWas) {
+TEST(History, FailedStepDoesNotChangeIt) {
   const Fold f(0, true);
   Simulation simulation(f.model);
   for (int step = 0; step < 1000; ++step) {
@@ -155,7 +155,7 @@ struct Names {
   }
 };
 
-TEST(History, RunsWithoutItDoNotWriteIt) {
+TEST(History, RunsWithoutHistoryDoNotWriteIt) {
   Names names;
   const State state;
   State::name_arrays(state, names);

@@ -66,7 +66,7 @@ TEST(ForceFunction, DragFollowsItsRecurrenceAndTheEnergyBalanceCloses) {
   EXPECT_NEAR(simulation.diagnostics().balance(), before.balance(), 1e-9 * before.kinetic);
 }
 
-TEST(ForceFunction, ForcesThatAreNoNumbersAreAnErrorWithTheirVertex) {
+TEST(ForceFunction, NonFiniteForcesAreAnErrorWithTheVertex) {
   Simulation simulation(shared(dust()));
   simulation.add_load(force("burst", [](double, ConstVectors, ConstVectors, Vectors f) {
     f[7].y() = std::numeric_limits<double>::quiet_NaN();
@@ -82,7 +82,7 @@ TEST(ForceFunction, ForcesThatAreNoNumbersAreAnErrorWithTheirVertex) {
   EXPECT_EQ(simulation.checkpoint(), before);
 }
 
-TEST(Intervention, AnExceptionOfALoadLeavesTheLastWholeStep) {
+TEST(Intervention, ExceptionOfALoadLeavesTheLastCompleteStep) {
   const auto model = shared(small_model());
   Simulation simulation(model), undisturbed(model);
   int calls = 0;
@@ -100,7 +100,7 @@ TEST(Intervention, AnExceptionOfALoadLeavesTheLastWholeStep) {
   EXPECT_EQ(simulation.checkpoint(), undisturbed.checkpoint());
 }
 
-TEST(Intervention, WhatIsPutCountsAsWork) {
+TEST(Intervention, SetPositionsCountAsWork) {
   for (const Integrator integrator : {Integrator::implicit_euler, Integrator::bdf2}) {
     const auto model = shared(small_model({.integrator = integrator}));
     Simulation simulation(model);
@@ -122,7 +122,7 @@ TEST(Intervention, WhatIsPutCountsAsWork) {
   }
 }
 
-TEST(Intervention, PinsHoldWhatWasPutAndMoveItOn) {
+TEST(Intervention, PinsHoldSetPositionsAndContinueTheMotion) {
   const auto model = shared(small_model({.moving_pin = true}));
   Simulation simulation(model), other(model);
   for (int frame = 0; frame < 3; ++frame) {
@@ -142,7 +142,7 @@ TEST(Intervention, PinsHoldWhatWasPutAndMoveItOn) {
   }
 }
 
-TEST(Intervention, PositionsPutBeforeTheFirstStepAreHeldThere) {
+TEST(Intervention, PositionsSetBeforeTheFirstStepAreHeld) {
   const auto model = shared(small_model());
   Simulation simulation(model);
   std::vector<Vec3> x = model->rest_positions;

@@ -46,7 +46,7 @@ const std::string ball =
 const std::string floor_below = "[[collider]]\nname = 'floor'\nshape = 'plane'\n";
 const std::string gravity = "[[force]]\ntype = 'gravity'\nacceleration = [0, -10, 0]\n";
 
-TEST(RigidBody, FallsAndSpinsAsItShould) {
+TEST(RigidBody, FallsAndSpinsCorrectly) {
   for (const char* effort : {"draft", "normal", "exact"}) {
     for (const char* integrator : {"implicit_euler", "bdf2"}) {
       SCOPED_TRACE(std::string(effort) + " " + integrator);
@@ -119,7 +119,7 @@ TEST(RigidBody, ABoxOnASlopeSlidesOrHolds) {
   EXPECT_LT(std::abs(slid(0.7)), 1e-3);  // tan 30° is 0.577
 }
 
-TEST(RigidBody, IsHeldByAPinUntilItIsLetGo) {
+TEST(RigidBody, IsHeldByAPinUntilReleased) {
   Simulation simulation(
       build(ball + gravity +
             "[[pin]]\nbody = 'ball'\nuntil = 0.25\nkeyframes = [{ time = 0 }, { time = 0.25, "
@@ -136,7 +136,7 @@ TEST(RigidBody, IsHeldByAPinUntilItIsLetGo) {
 }
 
 /// A box that rises into falling cloth far faster than contact reaches keeps to its keyframes and lifts it.
-TEST(Collider, LiftsClothThatIsInItsWay) {
+TEST(Collider, LiftsClothInItsPath) {
   const auto file =
       std::filesystem::temp_directory_path() / ("lifted_" + std::to_string(::getpid()) + ".obj");
   {

@@ -66,7 +66,7 @@ TEST(SimulatedBody, HasTheMotionOfItsVertices) {
   EXPECT_LT((simulation.body("ball").points().front() - start).norm(), 1e-12);
 }
 
-TEST(SimulatedBody, ForceActsOnItAlone) {
+TEST(SimulatedBody, ForceActsOnItOnly) {
   Simulation simulation(two_sheets());
   SimulatedBody left = simulation.body("left");
   std::size_t seen = 0;
@@ -83,7 +83,7 @@ TEST(SimulatedBody, ForceActsOnItAlone) {
 }
 
 /// The energy it has when it is added counts as work from outside; from then on it is stored.
-TEST(SimulatedBody, PotentialActsOnItAloneAndIsInTheBalance) {
+TEST(SimulatedBody, PotentialActsOnItOnlyAndIsInTheBalance) {
   const auto model = two_sheets();
   Simulation simulation(model);
   const double before = simulation.diagnostics().balance();
@@ -118,7 +118,7 @@ TEST(SimulatedBody, UnknownNamesAreErrorsThatNameTheNearest) {
   expect([&] { simulation.add_load({"none", EnergyRole::work, nullptr}); }, "\"none\" is null");
 }
 
-TEST(SimulatedBody, BodyOfAVertexIsTheOneThatHasIt) {
+TEST(SimulatedBody, BodyOfAVertexOwnsIt) {
   const auto model = two_sheets();
   EXPECT_EQ(model->body_of(0).name, "left");
   EXPECT_EQ(model->body_of(15).name, "left");

@@ -31,7 +31,7 @@ void expect_same_bits(const Simulation& a, const Simulation& b) {
 class EveryIntegrator : public testing::TestWithParam<Integrator> {};
 INSTANTIATE_TEST_SUITE_P(Simulation, EveryIntegrator, testing::ValuesIn(all_integrators));
 
-TEST_P(EveryIntegrator, GoesOnFromACheckpointBitForBit) {
+TEST_P(EveryIntegrator, ResumesFromACheckpointBitForBit) {
   SmallModelOptions options;
   options.integrator = GetParam();
   options.tolerance = 1e-3;
@@ -63,7 +63,7 @@ TEST_P(EveryIntegrator, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(run(1), run(2));
 }
 
-TEST(Simulation, BeginsAtRestWithAllThatIsKnown) {
+TEST(Simulation, BeginsAtRestWithValidDiagnostics) {
   const Simulation simulation(shared(small_model()));
   const Diagnostics& row = simulation.diagnostics();
   EXPECT_EQ(row.frame, 0);
@@ -86,7 +86,7 @@ TEST(Simulation, ClockIsExactAtWholeFrames) {
   EXPECT_EQ(simulation.state().time, 1.0);
 }
 
-TEST(Simulation, PinsHoldMoveAndLetGo) {
+TEST(Simulation, PinsHoldMoveAndRelease) {
   SmallModelOptions options;
   options.moving_pin = true;
   const auto model = shared(small_model(options));
@@ -100,7 +100,7 @@ TEST(Simulation, PinsHoldMoveAndLetGo) {
   EXPECT_GT((simulation.state().positions[v] - expected).norm(), 0.01);
 }
 
-TEST(Simulation, InterruptedInsideAFrameGoesOnFromTheStepReached) {
+TEST(Simulation, InterruptedFrameContinuesFromTheLastStep) {
   const auto model = shared(small_model());
   Simulation straight(model), stopped(model), restored(model);
   for (int frame = 0; frame < 3; ++frame) straight.advance();
@@ -119,7 +119,7 @@ TEST(Simulation, InterruptedInsideAFrameGoesOnFromTheStepReached) {
   }
 }
 
-TEST(Simulation, StepThatCannotBeSolvedSaysWhereAndLeavesTheLastGoodState) {
+TEST(Simulation, FailedStepNamesThePlaceAndKeepsTheLastGoodState) {
   SmallModelOptions options;
   options.pinned = false;
   Model model = small_model(options);

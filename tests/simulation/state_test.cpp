@@ -96,7 +96,7 @@ void expect_no_use_of_scratch(const std::shared_ptr<const Model>& model, int fra
   }
 }
 
-TEST(Scratch, IsOfNoUseToALattice) {
+TEST(Scratch, DoesNotAffectALattice) {
   for (const Integrator integrator : {Integrator::implicit_euler, Integrator::bdf2,
                                       Integrator::linearly_implicit_euler, Integrator::symplectic_euler}) {
     SCOPED_TRACE(static_cast<int>(integrator));
@@ -109,7 +109,7 @@ TEST(Scratch, IsOfNoUseToALattice) {
   }
 }
 
-TEST(Scratch, IsOfNoUseToAShellThatTouchesAndRubs) {
+TEST(Scratch, DoesNotAffectAShellInContact) {
   for (const Effort effort : {Effort::draft, Effort::normal, Effort::exact})
     for (const Integrator integrator : {Integrator::implicit_euler, Integrator::bdf2}) {
       SCOPED_TRACE(name_of(effort_names(), effort) + " " +
@@ -118,14 +118,14 @@ TEST(Scratch, IsOfNoUseToAShellThatTouchesAndRubs) {
     }
 }
 
-TEST(Scratch, IsOfNoUseToRigidBodiesThatPinsMove) {
+TEST(Scratch, DoesNotAffectPinnedRigidBodies) {
   for (const char* effort : {"draft", "normal", "exact"}) {
     SCOPED_TRACE(effort);
     expect_no_use_of_scratch(rigid(effort), 12);
   }
 }
 
-TEST(Scratch, IsOfNoUseToWhatIsTangled) {
+TEST(Scratch, DoesNotAffectATangledStart) {
   const auto model = tangled();
   Simulation whole(model, {.allow_tangled = true});
   ASSERT_GT(whole.tangled(), 0U);
@@ -134,7 +134,7 @@ TEST(Scratch, IsOfNoUseToWhatIsTangled) {
   expect_no_use_of_scratch(model, 30, {.allow_tangled = true});
 }
 
-TEST(Scratch, CostsAreCountedWhateverIsForgotten) {
+TEST(Scratch, CostsIncludeForgottenWorkspaces) {
   Simulation simulation(draped({}));
   for (int step = 0; step < 4; ++step) simulation.step();
   const RunCosts before = simulation.costs();
@@ -164,7 +164,7 @@ void expect_untouched_by_failure(Simulation& simulation) {
   FAIL() << "no step failed";
 }
 
-TEST(FailedStep, LeavesTheStateAsItWas) {
+TEST(FailedStep, DoesNotChangeTheState) {
   for (const Effort effort : {Effort::normal, Effort::exact}) {
     Simulation cloth(draped({effort, Integrator::implicit_euler, true}));
     expect_untouched_by_failure<Error>(cloth);
@@ -179,7 +179,7 @@ TEST(FailedStep, LeavesTheStateAsItWas) {
   expect_untouched_by_failure<Error>(lattice);
 }
 
-TEST(FailedStep, OfALoadThatThrowsIsTakenAgainWithTheSameBits) {
+TEST(FailedStep, OfAThrowingLoadIsRepeatedWithTheSameBits) {
   for (const Effort effort : {Effort::normal, Effort::exact}) {
     const auto model = draped({effort});
     Simulation simulation(model), undisturbed(model);
@@ -198,7 +198,7 @@ TEST(FailedStep, OfALoadThatThrowsIsTakenAgainWithTheSameBits) {
   }
 }
 
-TEST(RunState, ComesBackFromACheckpointWithEveryArray) {
+TEST(RunState, IsRestoredFromACheckpointWithEveryArray) {
   Simulation simulation(draped({}));
   for (int step = 0; step < 70; ++step) simulation.step();
   const Bytes bytes = simulation.checkpoint();

@@ -34,7 +34,7 @@ struct Moving {
   }
 };
 
-TEST(StepControl, WhatRestsTakesOneStepAFrame) {
+TEST(StepControl, BodyAtRestTakesOneStepPerFrame) {
   Moving still;
   still.add(Vec3::Zero(), Vec3::Zero());
   EXPECT_EQ(still.level(), 0);
@@ -43,7 +43,7 @@ TEST(StepControl, WhatRestsTakesOneStepAFrame) {
   EXPECT_EQ(drifting.level(), 0) << "alone a velocity is nothing";
 }
 
-TEST(StepControl, TheAccelerationBoundsTheStepByTheSizeWhateverTheEdges) {
+TEST(StepControl, AccelerationAndSizeBoundTheStepForAnyEdges) {
   for (const double a : {1.0, 9.81, 40.0, 160.0}) {
     Moving moving;
     moving.add(Vec3::Zero(), Vec3(0, -a, 0));
@@ -66,7 +66,7 @@ TEST(StepControl, DraftsTakeStepsTwiceAsLong) {
   EXPECT_EQ(moving.level({}, Effort::draft), moving.level() - 1);
 }
 
-TEST(StepControl, WhatMeetsGoesAFewEdgesPastEachOther) {
+TEST(StepControl, MeetingPartsMoveAFewEdgesPerStep) {
   Moving moving;
   moving.add(Vec3(20, 0, 0), Vec3::Zero());
   moving.add(Vec3(-20, 0, 0), Vec3::Zero());
@@ -75,7 +75,7 @@ TEST(StepControl, WhatMeetsGoesAFewEdgesPastEachOther) {
   EXPECT_GT(40 * frame / (1 << level), 2 * 0.02);
 }
 
-TEST(StepControl, HardStepsAreFollowedByShorterOnesAndEasyOnesByLonger) {
+TEST(StepControl, HardStepsShortenAndEasyStepsLengthenTheNext) {
   Moving moving;
   moving.add(Vec3::Zero(), Vec3(0, -9.81, 0));
   const int level = moving.level();

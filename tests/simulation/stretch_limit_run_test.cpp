@@ -61,7 +61,7 @@ TEST(StretchLimitRun, HoldsWhileTheSheetFallsAndHangs) {
   EXPECT_GT(with, 1.025);
 }
 
-TEST(StretchLimitRun, PullsBackWhatStartsThreeTimesAsLong) {
+TEST(StretchLimitRun, PullsBackASheetOfThreeTimesItsLength) {
   Model model = hanging(12, "stretch_limit = 1.05\n", 3);
   model.pins.resize(0);
   Simulation simulation(shared(std::move(model)));
@@ -69,7 +69,7 @@ TEST(StretchLimitRun, PullsBackWhatStartsThreeTimesAsLong) {
   EXPECT_LT(simulation.diagnostics().max_stretch, 1.06);
 }
 
-TEST(StretchLimitRun, ALimitThatIsNewOnResumeIsWork) {
+TEST(StretchLimitRun, LimitAddedOnResumeCountsAsWork) {
   Simulation weak(shared(hanging(8, "")));
   for (int frame = 0; frame < 20; ++frame) weak.advance();
   Simulation limited(shared(hanging(8, "stretch_limit = 1.03\n")));

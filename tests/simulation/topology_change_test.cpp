@@ -101,7 +101,7 @@ Vec3 centre(const Simulation& simulation, const Chosen& chosen) {
   return sum / mass;
 }
 
-TEST(CutRun, LowerHalfFallsFreelyAndUpperHalfHangsOn) {
+TEST(CutRun, LowerHalfFallsFreelyAndUpperHalfHangs) {
   constexpr int line = 8;
   Simulation simulation = started(hanging(square()));
   for (int frame = 0; frame < 20; ++frame) simulation.advance();
@@ -156,7 +156,7 @@ TEST(CutRun, LowerHalfFallsFreelyAndUpperHalfHangsOn) {
   EXPECT_NEAR(simulation.diagnostics().balance(), energy.balance(), 1e-3 * simulation.diagnostics().kinetic);
 }
 
-TEST(CutRun, CutAtTheStartGivesTheBitsOfAMeshThatWasCutBefore) {
+TEST(CutRun, CutAtTheStartGivesTheBitsOfACutMesh) {
   Simulation cut_here = started(hanging(square()));
   cut_here.cut("cloth", row(8));
   Simulation was_cut = started(hanging(cut(square(), row(8)).mesh));
@@ -168,7 +168,7 @@ TEST(CutRun, CutAtTheStartGivesTheBitsOfAMeshThatWasCutBefore) {
   EXPECT_EQ(cut_here.state().velocities, was_cut.state().velocities);
 }
 
-TEST(CutRun, SecondCutAndACheckpointGoOn) {
+TEST(CutRun, SecondCutAndCheckpointContinue) {
   Simulation simulation = started(hanging(square()));
   for (int frame = 0; frame < 3; ++frame) simulation.advance();
   simulation.cut("cloth", row(8));
@@ -184,7 +184,7 @@ TEST(CutRun, SecondCutAndACheckpointGoOn) {
   EXPECT_EQ(again.state().positions, simulation.state().positions);
 }
 
-TEST(CutRun, HalvesThatTouchAfterTheCutPartWithContact) {
+TEST(CutRun, HalvesSeparateAfterTheCutWithContact) {
   Simulation simulation = started(hanging(square(), true));
   for (int frame = 0; frame < 10; ++frame) simulation.advance();
   const Diagnostics before = simulation.diagnostics();
@@ -207,7 +207,7 @@ TEST(CutRun, HalvesThatTouchAfterTheCutPartWithContact) {
   EXPECT_EQ(simulation.diagnostics().crossings, 0);
 }
 
-TEST(CutRun, BodiesOfOneMeshAreCutEachByItself) {
+TEST(CutRun, BodiesThatShareAMeshAreCutSeparately) {
   Scene two = hanging(square());
   two.bodies.push_back(two.bodies[0]);
   two.bodies[1].name = "lining";
@@ -225,7 +225,7 @@ TEST(CutRun, BodiesOfOneMeshAreCutEachByItself) {
   simulation.advance();
 }
 
-TEST(CutRun, RefusesWhatCannotBeCut) {
+TEST(CutRun, RefusesInvalidCuts) {
   Simulation simulation = started(hanging(square()));
   const auto complaint = [&](const std::string& body, std::vector<std::array<int, 2>> edges) -> std::string {
     try {

@@ -153,7 +153,7 @@ TEST(CoarseSpace, IsTheGalerkinInverseWhereCouplingsAreEqual) {
   EXPECT_NEAR(product, flat.dot(expected), 1e-3 * product);
 }
 
-TEST(CoarseSpace, IsSymmetricAndPositiveAndKeepsHeldVerticesAndBodiesApart) {
+TEST(CoarseSpace, IsSymmetricPositiveAndSeparatesHeldVerticesAndBodies) {
   for (const double noise : {0.0, 0.2, 3.0}) {
     Bodies bodies(noise);
     CoarseSpace space(bodies.h, bodies.rest);
@@ -300,7 +300,7 @@ TEST(CoarseSpace, HasTheSameBitsForAnyThreadCount) {
               0);
 }
 
-TEST(CoarseSpace, LeavesTheSolutionOfAStepAsItIs) {
+TEST(CoarseSpace, DoesNotChangeTheSolutionOfAStep) {
   Cloth with(40), without(40);
   with.steps(10, true);
   without.steps(10, false);

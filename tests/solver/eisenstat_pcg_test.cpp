@@ -92,7 +92,7 @@ TEST_P(EisenstatPcgTest, PreconditionsByASymmetricPositiveDefiniteMatrixAndMulti
   }
 }
 
-TEST(EisenstatPcg, KeepsLightVerticesBesideABodyThatIsMuchStiffer) {
+TEST(EisenstatPcg, KeepsPrecisionOfLightVerticesBesideAStiffBody) {
   const auto pattern = std::make_shared<const SymmetricPattern>(std::vector<std::pair<int, int>>{{0, 1}}, 2);
   constexpr std::size_t light = 10;
   const std::vector<double> masses(light + 2, 1e-4);
@@ -112,7 +112,7 @@ TEST(EisenstatPcg, KeepsLightVerticesBesideABodyThatIsMuchStiffer) {
   EXPECT_LT(system.residual(1), 1e-8 * rr);  // nothing couples what is light: the preconditioner is H
 }
 
-TEST_P(EisenstatPcgTest, TakesCorrectionsOfTheResidualIntoItsDirections) {
+TEST_P(EisenstatPcgTest, AddsCorrectionsToItsDirections) {
   EisenstatPcg system;
   system.factor(h_);
   const EliminationOrder& pattern = h_.sets()[0]->pattern();

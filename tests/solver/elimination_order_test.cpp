@@ -163,14 +163,14 @@ TEST(EliminationOrder, HoldsCouplingsOfAnyGraph) {
   expect_sound(runs, vertices);
 }
 
-TEST(EliminationOrder, NoCouplingsAndNoVerticesAreFine) {
+TEST(EliminationOrder, HandlesNoCouplingsAndNoVertices) {
   expect_sound({}, 0);
   expect_sound({}, 1);
   expect_sound({}, 20000);
   expect_sound({{0, 3, 7, 2}}, 10);
 }
 
-TEST(EliminationOrder, CutsLargeBodiesIntoTasksThatRunSideBySide) {
+TEST(EliminationOrder, DividesLargeBodiesIntoParallelTasks) {
   const Lattice lattice = test::box_lattice({100, 60, 1});
   const EliminationOrder pattern(runs_of(build_springs(lattice, Bracing::kuhn)),
                                  static_cast<int>(lattice.vertex_count()));

@@ -73,7 +73,7 @@ TEST_F(IncrementalPotentialTest, ImbalanceIsTheLargestAccelerationOfAFreeVertex)
   EXPECT_NEAR(imbalance.norm, std::sqrt(square), 1e-12 * std::sqrt(square));
 }
 
-TEST_F(IncrementalPotentialTest, ImbalanceNamesTheFirstVertexThatIsNotANumber) {
+TEST_F(IncrementalPotentialTest, ImbalanceNamesTheFirstNonFiniteVertex) {
   const StepProblem step = problem();
   const IncrementalPotential function(step, rest_, dt_);
   std::vector<Vec3> g = test::random_vectors(rest_.size(), 0.1, 4);

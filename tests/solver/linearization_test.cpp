@@ -68,7 +68,7 @@ TEST(Linearization, RankOneTermOfNegativeFactorIsLeftOut) {
 }
 
 /// A chain whose blocks are those of springs and of something else, with zero rows.
-TEST(Linearization, StandInLeavesTheSystemAsItIsAndTakesItIntoTheFactorisation) {
+TEST(Linearization, StandInSpringsDoNotChangeTheSystemButEnterTheFactorisation) {
   constexpr int chain = 50;
   std::vector<std::pair<int, int>> pairs;
   for (int v = 0; v + 1 < chain; ++v) pairs.emplace_back(v, v + 1);

@@ -103,7 +103,7 @@ TEST_P(NumberedNet, InverseIsSymmetricAndPositive) {
 }
 
 /// Also for the smoothest errors, and also if nearly all couplings are between chunks.
-TEST_P(NumberedNet, EveryCycleShrinksTheError) {
+TEST_P(NumberedNet, EveryCycleReducesTheError) {
   Net net(GetParam());
   for (const bool smooth : {false, true}) {
     std::vector<Vec3> error = any_vectors(3);

@@ -205,7 +205,7 @@ class Ceiling : public Potential {
   double height_;
 };
 
-TEST(ImplicitEuler, NeverStepsPastWhatAPotentialAllows) {
+TEST(ImplicitEuler, NeverExceedsTheLimitOfAPotential) {
   test::Flag flag;
   const Ceiling ceiling(6.5);
   test::expect_potential_is_sound(ceiling, flag.rest, 0.5);
@@ -225,7 +225,7 @@ TEST(ImplicitEuler, NeverStepsPastWhatAPotentialAllows) {
   EXPECT_GT(highest, 6.4) << "it did hit the ceiling";
 }
 
-TEST(ImplicitEuler, ATargetBeyondWhatAPotentialAllowsFailsWithAReason) {
+TEST(ImplicitEuler, TargetBeyondTheLimitOfAPotentialFailsWithAReason) {
   test::Flag flag;
   flag.hold_top_corners();
   for (Vec3& target : flag.targets) target.y() += 1;
@@ -240,7 +240,7 @@ TEST(ImplicitEuler, ATargetBeyondWhatAPotentialAllowsFailsWithAReason) {
   EXPECT_EQ(flag.state.positions, before.positions);
 }
 
-TEST(ImplicitEuler, EndsAtOnceWhereFloatLosesTheMassesAndShorterStepsMayNot) {
+TEST(ImplicitEuler, EndsAtOnceIfFloatLosesTheMasses) {
   for (const bool in_double : {true, false}) {
     test::Flag flag;
     flag.hold_top_corners();
@@ -265,7 +265,7 @@ class Cliff : public test::Wells {
   double value(ConstVectors) const override { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
-TEST(ImplicitEuler, APotentialThatIsNotANumberFailsAndLeavesTheStateAlone) {
+TEST(ImplicitEuler, NonFinitePotentialFailsAndDoesNotChangeTheState) {
   for (const Integrator integrator : {Integrator::implicit_euler, Integrator::bdf2}) {
     test::Flag flag;
     const State before = flag.state;

@@ -93,7 +93,7 @@ TEST_F(LooseStep, IsMovedRigidly) {
     EXPECT_NEAR((x_[v] - x_[0]).norm(), (before[v] - before[0]).norm(), 1e-14) << v;
 }
 
-TEST_F(LooseStep, DoesNoWorkByWhatIsOutOfBalance) {
+TEST_F(LooseStep, ResidualDoesNoWork) {
   // It has gone a little too far, and is not quite where it should be besides.
   x_ = test::sum(from_, 1.005, test::sum(prediction_, -1, from_));
   x_ = test::sum(x_, 1, test::random_vectors(x_.size(), 1e-6, 2));
@@ -114,7 +114,7 @@ TEST_F(LooseStep, DoesNoWorkByWhatIsOutOfBalance) {
   for (const std::size_t part : {0, 1}) EXPECT_LT(imbalance(part).first, 1e-11) << part;
 }
 
-TEST_F(LooseStep, LeavesHeldVerticesWhereTheyAre) {
+TEST_F(LooseStep, DoesNotMoveHeldVertices) {
   fixed_[3] = 1;
   const Vec3 held = x_[3];
   std::vector<Vec3> g = gradient();

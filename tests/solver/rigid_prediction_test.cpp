@@ -112,7 +112,7 @@ TEST(RigidPrediction, Bdf2StaysRigidAndKeepsNearlyAllSpin) {
   EXPECT_NEAR(angular_momentum(state).norm(), first, 3e-3 * first);
 }
 
-TEST(RigidPrediction, LeavesOthersAndExplicitStepsAlone) {
+TEST(RigidPrediction, DoesNotChangeOthersAndExplicitSteps) {
   State state = spinning(Vec3(0.2, 0.2, 0.2), Vec3(0, 0, 50), Vec3::Zero());
   state.positions.insert(state.positions.begin(), Vec3(7, 7, 7));
   state.velocities.insert(state.velocities.begin(), Vec3(1, 0, 0));

@@ -58,7 +58,7 @@ TEST_F(OfMasses, IsExactAfterAStepThatLeavesAShare) {
   }
 }
 
-TEST_F(OfMasses, JudgesAStepByWhatItsErrorIsAllowed) {
+TEST_F(OfMasses, ComparesTheErrorWithTheAllowedError) {
   const IncrementalPotential function(problem, goal, dt);
   for (const double over : {0.9, 1.1}) {
     StepError error(problem, function, tolerance);
@@ -77,7 +77,7 @@ TEST_F(OfMasses, DoesNotHideALightPartBehindAHeavyOne) {
   EXPECT_TRUE(step(other, x, {0.1, 1e-6}));
 }
 
-TEST_F(OfMasses, TakesStepsThatShrinkForConvergenceWhateverTheResidualDoes) {
+TEST_F(OfMasses, ShrinkingStepsCountAsConvergence) {
   // Stiff contact that comes in raises the residual, though the motion hardly changes any more.
   const IncrementalPotential function(problem, goal, dt);
   StepError error(problem, function, tolerance);
@@ -89,7 +89,7 @@ TEST_F(OfMasses, TakesStepsThatShrinkForConvergenceWhateverTheResidualDoes) {
   EXPECT_NEAR(error.largest() / (0.01 / 0.99 * 0.01 * 0.9e-3), 1, 1e-9);
 }
 
-TEST_F(OfMasses, TakesTheResidualWhereASystemWasNotSolved) {
+TEST_F(OfMasses, UsesTheResidualIfASystemWasNotSolved) {
   // Conjugate gradients that stop early, or that hardly see a light part: a step of nothing, the error stays.
   const IncrementalPotential function(problem, goal, dt);
   StepError error(problem, function, tolerance);
@@ -98,7 +98,7 @@ TEST_F(OfMasses, TakesTheResidualWhereASystemWasNotSolved) {
   EXPECT_FALSE(step(error, x, {0.99, 0.01}));
 }
 
-TEST_F(OfMasses, TakesALimitedMotionForNoMoreThanItWas) {
+TEST_F(OfMasses, UsesTheLengthOfALimitedMotion) {
   // The guard left a hundredth of the first step. A second one of a tenth of its length shows no convergence.
   const IncrementalPotential function(problem, goal, dt);
   StepError error(problem, function, tolerance);
@@ -110,7 +110,7 @@ TEST_F(OfMasses, TakesALimitedMotionForNoMoreThanItWas) {
   EXPECT_FALSE(error.end(near, from, gradient(near), near, next, next, 1));
 }
 
-TEST_F(OfMasses, TakesTheResidualWhereThatFallsFaster) {
+TEST_F(OfMasses, UsesTheResidualIfItFallsFaster) {
   const IncrementalPotential function(problem, goal, dt);
   StepError error(problem, function, tolerance);
   std::vector<Vec3> x(4, Vec3(0, 1e-3, 0));
@@ -119,7 +119,7 @@ TEST_F(OfMasses, TakesTheResidualWhereThatFallsFaster) {
   EXPECT_NEAR(error.largest() / (0.01 * 0.5e-3), 1, 1e-9);
 }
 
-TEST_F(OfMasses, CountsWhatTheGuardTookFromAStep) {
+TEST_F(OfMasses, CountsThePartOfAStepThatTheGuardRemoved) {
   const IncrementalPotential function(problem, goal, dt);
   StepError error(problem, function, tolerance);
   const std::vector<Vec3> x(4, Vec3(0, 1e-9, 0)), s(4, Vec3(0, -1e-3, 0)), d(4, Vec3(0, -0.4e-3, 0));

@@ -26,7 +26,7 @@ const std::vector<Sample> vega = {
 
 class VegaTrajectory : public testing::TestWithParam<double> {};
 
-TEST_P(VegaTrajectory, OfTheFlagHeldAtItsTopCornersIsMatched) {
+TEST_P(VegaTrajectory, AgreesForTheFlagHeldAtItsTopCorners) {
   test::Flag flag;
   flag.hold_top_corners();
   SolverSettings settings;

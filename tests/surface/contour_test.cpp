@@ -125,7 +125,7 @@ TEST(MarchingCubes, ClosedOnRandomShapesInLatticesTooSmallForThem) {
   }
 }
 
-TEST(MarchingCubes, AWallThinnerThanAVoxelIsLostAndTheDistanceTells) {
+TEST(MarchingCubes, WallThinnerThanAVoxelIsLostAndReported) {
   const Built built = build(shapes::box({0, 0, 0}, {4, 3, 0.1}), 1, ContourMethod::cubes);
   EXPECT_EQ(built.contour.mesh.face_count(), 0u);
   EXPECT_GT(built.contour.distance, 1);

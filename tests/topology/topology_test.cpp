@@ -106,7 +106,7 @@ TEST(Cut, OrderAndRepetitionOfEdgesDoNotMatter) {
   EXPECT_EQ(once.origins, twice.origins);
 }
 
-TEST(Cut, FanOfThreeFacesAtOneEdgePartsEach) {
+TEST(Cut, ThreeFacesAtOneEdgeSeparate) {
   Topology t;
   t.face_offsets = {0, 3, 6, 9};
   t.face_vertices = {0, 1, 2, 0, 1, 3, 1, 0, 4};
@@ -115,7 +115,7 @@ TEST(Cut, FanOfThreeFacesAtOneEdgePartsEach) {
   EXPECT_THAT(change.origins, ElementsAre(0, 1, 2, 3, 4, 0, 1, 1, 0));
 }
 
-TEST(Cut, RefusesWhatIsNoEdge) {
+TEST(Cut, RefusesPairsThatAreNotEdges) {
   const Grid grid{4, 3};
   const auto complaint = [&](Edges edges) -> std::string {
     try {

@@ -18,7 +18,7 @@ std::string inflated(const std::string& packed, std::size_t size) {
   return out;
 }
 
-TEST(Deflater, GivesBackWhatWentIn) {
+TEST(Deflater, RoundTripIsExact) {
   std::mt19937 random(1);
   std::string content;
   Deflater deflater;
@@ -33,9 +33,9 @@ TEST(Deflater, GivesBackWhatWentIn) {
   EXPECT_TRUE(inflated(packed, content.size()) == content);
 }
 
-TEST(Deflater, HoldsNothing) { EXPECT_EQ(inflated(Deflater().finish(), 1), ""); }
+TEST(Deflater, HandlesEmptyInput) { EXPECT_EQ(inflated(Deflater().finish(), 1), ""); }
 
-TEST(Base64, IsThatOfTheStandard) {
+TEST(Base64, AgreesWithTheStandard) {
   // RFC 4648, section 10.
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");

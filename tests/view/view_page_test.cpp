@@ -85,7 +85,7 @@ TEST(ViewPage, CannotBeBrokenByTitlesOrNames) {
   EXPECT_THAT(between(page, "<script id=\"run\"", "</script>"), testing::Not(HasSubstr("<!--")));
 }
 
-TEST(ViewPage, IsThinnedToTheSizeAskedFor) {
+TEST(ViewPage, RespectsTheSizeLimit) {
   Scratch scratch;
   write_run(scratch / "run", 60);
   const RunReader run(scratch / "run");
@@ -105,7 +105,7 @@ TEST(ViewPage, IsThinnedToTheSizeAskedFor) {
   EXPECT_EQ(head["notes"].size(), report.notes.size());
 }
 
-TEST(ViewPage, SaysWhenNothingFits) {
+TEST(ViewPage, ReportsIfNothingFits) {
   Scratch scratch;
   write_run(scratch / "run", 3);
   ViewOptions options;
