@@ -10,8 +10,8 @@ namespace {
 
 constexpr double share_to_warn = 0.01;  // of the steps
 constexpr std::size_t max_ranges = 8;
-/// Beyond a limit of stretch, as a share of the rest length: the limit is stiff, not hard, and a fall that it
-/// stops goes this far past it.
+/// Excess over a stretch limit, as a share of the rest length, that is not reported: the limit is stiff, not
+/// hard, and a fall that it stops may exceed it by this much.
 constexpr double stretch_slack = 0.01;
 
 bool ends_in(const std::vector<int>& frames, int last) { return !frames.empty() && frames.back() == last; }

@@ -32,8 +32,8 @@ Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - normal.dot(v) * 
 
 constexpr std::uint64_t second_mask = (std::uint64_t{1} << 31) - 1;
 
-/// The slip that a contact goes on with: that of its own pair; of a vertex that has gone on to a neighbour of
-/// its last triangle, that of the last; otherwise none.
+/// Returns the slip with which a contact continues: the slip of its pair; for a vertex that has moved on to a
+/// neighbouring triangle, the slip on the last one; otherwise zero.
 Vec3 known_slip(const ContactSurface& surface, std::uint64_t key, std::span<const PairSlip> slips) {
   const auto by_key = [](const PairSlip& s, std::uint64_t k) { return s.key < k; };
   const auto known = std::lower_bound(slips.begin(), slips.end(), key, by_key);
@@ -133,8 +133,8 @@ std::span<const MergedContact> ContactPotential::contacts(ConstVectors x,
   return buffer;
 }
 
-/// Where a feature belongs to a body with a frame: the point of its surface that touches, by the frame's
-/// vertices; its points no longer count.
+/// If a feature belongs to a body with a frame, expresses the touching point of its surface by the frame's
+/// vertices, which replace the points of the feature.
 void ContactPotential::carry(FrictionTerm& sliding, ConstVectors x, ConstVectors q, Carried& carried) const {
   const MergedContact& at = sliding.contact;
   const int count = point_count(at);

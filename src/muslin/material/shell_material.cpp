@@ -25,7 +25,7 @@ double lowest_bias(double warp, double weft, double poisson) {
   return (warp + weft + 2 * poisson * std::sqrt(warp * weft)) / 4;
 }
 
-/// Derives what is not given from what is.
+/// Derives missing values from given ones.
 void complete(const TomlTable& table, ShellMaterial& m) {
   if (table.has("base")) return;
   if (!table.has("membrane_weft")) m.membrane_weft = m.membrane_warp;

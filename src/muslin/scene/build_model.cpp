@@ -79,8 +79,8 @@ void add_vertices(Model& model, Component& component, const Place& place) {
   model.prescribed.back().first = component.first_vertex;
 }
 
-/// Marks the component's vertices that a pin holds from the start and for ever. Pins that come or go leave
-/// the energies as they are, so that no step changes what is stored.
+/// Marks the component's vertices that a pin holds during the whole run. Other pins do not change the
+/// energies, so that the stored energy does not jump.
 std::vector<std::uint8_t> always_held(const Model& model, const Component& component) {
   const auto count = static_cast<std::size_t>(component.vertex_count);
   std::vector<std::uint8_t> held(count, 0);

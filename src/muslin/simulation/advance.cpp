@@ -17,8 +17,8 @@ void add(const ContactCounts& counts, RunCosts& costs) {
   costs.shortened += static_cast<std::int64_t>(counts.shortened);
 }
 
-/// A step that missed its tolerance is tried in halves so often before it is taken as it is; not at all in a
-/// frame where that has been of no use before.
+/// A step that missed its tolerance is halved at most this many times before it is accepted; it is not halved
+/// in a frame in which halving has already failed.
 constexpr int patient_halvings = 4;
 
 class Advance {
@@ -75,7 +75,7 @@ class Advance {
  private:
   int patience() const { return state_.counts.converged_steps < state_.counts.steps ? 0 : patient_halvings; }
 
-  /// Undoes a step that was made but is not wanted.
+  /// Undoes a step that was made but is rejected.
   void take_back(const State& before, const ContactMemory& contact) {
     state_.motion = before;
     state_.contact = contact;
@@ -83,7 +83,7 @@ class Advance {
     guard_ = scratch_.guard(model_, state_);
   }
 
-  /// Decides what is held, and where, at the end of the step.
+  /// Determines the held vertices and their targets at the end of the step.
   Holds hold(const StepContext& context, const State& before) {
     Holds next = state_.holds;
     next.step(model_.pins, context.time_begin, context.time_end, before.positions, scratch_.fixed,
@@ -172,7 +172,7 @@ void Scratch::prepare(const Model& model) {
   parts = find_parts(model);
   fixed.assign(count, 0);
   targets.assign(count, Vec3::Zero());
-  // Vertices that move as they are told have no mass, but solvers divide by masses before they leave it out.
+  // Prescribed vertices have no mass, but solvers divide by masses before they leave them out.
   masses = model.masses;
   for (const Prescribed& motion : model.prescribed)
     std::fill_n(masses.begin() + motion.first, motion.start.size(), 1.0);

@@ -21,9 +21,9 @@ bool is_implicit(Integrator integrator) {
   return integrator == Integrator::implicit_euler || integrator == Integrator::bdf2;
 }
 
-/// Adds the generalised force gᵢ with which the integrator lets a potential act: the gradient at the end of the
-/// step, its linearisation about the beginning, or the gradient at the beginning. Returns what the potential
-/// stores at the end [J].
+/// Adds the generalised force gᵢ that the integrator uses for a potential: the gradient at the end of the
+/// step, its linearisation about the beginning, or the gradient at the beginning. Returns the energy that the
+/// potential stores at the end [J].
 double act_in(const SolvedStep& step, const ActingPotential& act, ConstVectors displacement, Vectors g) {
   const Potential& potential = *act.potential;
   const std::vector<Vec3>&before = step.before->positions, &after = step.after->positions;
@@ -76,9 +76,9 @@ EnergyFlow energy_flow(const SolvedStep& step) {
     for (std::size_t v = begin; v < end; ++v) {
       const Vec3& v0 = before.velocities[v];
       const Vec3& v1 = after.velocities[v];
-      // A turning body's velocities are no differences of positions.
+      // The velocities of a rotating body are not differences of positions.
       const bool euler = all_euler && (rigidly_rotated.empty() || rigidly_rotated[v] == 0);
-      // The prediction of symplectic Euler is of use only to loads; its inertia is that of its velocities.
+      // The prediction of symplectic Euler is used only by loads; its inertia follows from the velocities.
       const Vec3 acceleration =
           euler ? Vec3((v1 - v0) / step.length)
                 : Vec3((after.positions[v] - step.context->inertial_prediction[v]) / (tau * tau));

@@ -87,7 +87,7 @@ void EnergyLedger::go_on_with(const Terms& acting, ConstVectors positions) {
       break;
     }
   }
-  // Energy that came or went because the scene was changed in between was put in or taken out from outside.
+  // Energy that changed because the scene was changed in between counts as external work.
   for (std::size_t j = 0; j < earlier.size(); ++j)
     if (!used[j]) work -= earlier[j];
   for (std::size_t i = 0; i < acting.potentials.size(); ++i) {

@@ -1,4 +1,4 @@
-// A simulation's vertices put elsewhere by hand, between two steps.
+// Moves vertices of a simulation by hand, between two steps.
 #include <algorithm>
 #include <utility>
 

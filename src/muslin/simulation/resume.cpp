@@ -1,4 +1,4 @@
-// A simulation's state as bytes, and back.
+// Saves the state of a simulation as bytes and restores it.
 #include <utility>
 
 #include <fmt/format.h>

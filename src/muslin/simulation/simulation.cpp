@@ -100,7 +100,7 @@ void Simulation::Impl::advance() {
   if (time().steps_per_frame) {
     report = muslin::advance(*model, terms(), state, step_length(level), scratch);
   } else {
-    // Motion that begins within a step shows at its end only.
+    // Motion that begins within a step is visible only at its end.
     const RunState before = state;
     for (;;) {
       report = muslin::advance(*model, terms(), state, step_length(level), scratch);

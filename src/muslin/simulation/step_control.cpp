@@ -7,14 +7,14 @@
 namespace muslin {
 namespace {
 
-/// a dt² as a share of the size of a part, whatever its resolution.
+/// Largest a dt² as a share of the size of a part, independent of its resolution.
 constexpr double acceleration_share = 3.5e-4, draft_longer = 4;
-/// Edges that a part goes in a step relative to another.
+/// Edges by which a part may move in a step relative to another.
 constexpr double edges_past = 4;
-/// Iterations from which on a step is hard, and up to which it is easy.
+/// A step is hard with at least this many iterations, and easy with at most this many.
 constexpr int hard = 24, easy = 12;
 constexpr int max_harder = 2;
-/// What is squeezed by what moves anyway would ask for shorter steps without end.
+/// Bodies squeezed by prescribed motion would otherwise require ever shorter steps.
 constexpr int finest = 6;
 
 }  // namespace
@@ -53,7 +53,7 @@ int StepControl::choose(const ModelParts& parts, std::span<const double> acceler
   }
   int wanted = static_cast<int>(std::ceil(std::log2(frame_time / shortest) - 1e-9));
   wanted = std::max(wanted, 0) + harder;
-  // Steps grow by no more than two at a time.
+  // The step at most doubles.
   if (moving) wanted = std::max(wanted, level - 1);
   wanted = std::min(wanted, finest);
   while (ticks % length(wanted) != 0) ++wanted;

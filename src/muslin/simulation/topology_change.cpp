@@ -1,4 +1,4 @@
-// A simulation that goes on with other topology.
+// Continues a simulation with a changed topology.
 #include <algorithm>
 #include <utility>
 
@@ -31,8 +31,8 @@ std::vector<Vec3> gathered(ConstVectors values, std::span<const int> origins) {
   return result;
 }
 
-/// Keeps what the pins hold: a vertex has the anchor of its origin. A pin that did not hold all of these
-/// takes hold anew in the next step.
+/// Keeps the anchors of the pins: a vertex has the anchor of its origin. A pin that did not hold all of its
+/// vertices records them again in the next step.
 Holds gathered(const Holds& earlier, const Model& from, const Model& to, std::span<const int> origins) {
   Holds holds;
   if (earlier.holding.size() != from.pins.size() || from.pins.size() != to.pins.size()) return holds;
@@ -62,7 +62,7 @@ bool share_a_corner(const ContactSurface& surface, ConstVectors points, const Cr
   return false;
 }
 
-/// Refuses crossings at x but those of triangles that a cut has just parted.
+/// Refuses crossings at x, except those of triangles that a cut has just separated.
 void refuse_other_crossings(const ContactModel& contact, ConstVectors x) {
   std::vector<Vec3> points(contact.surface->point_count());
   contact.map->apply(x, points);
@@ -70,8 +70,8 @@ void refuse_other_crossings(const ContactModel& contact, ConstVectors x) {
     if (!share_a_corner(*contact.surface, points, crossing)) refuse_crossings(contact, x);
 }
 
-/// Opens edges of a mesh of the scene, which becomes one in memory: that of the body alone, as others may
-/// have the same file.
+/// Opens edges of a mesh of the scene, which becomes a mesh in memory that only this body uses, because other
+/// bodies may have the same file.
 std::vector<int> cut_mesh(Scene& scene, const std::string& body, std::string& path,
                           std::span<const std::array<int, 2>> edges) {
   MeshCut halves = cut(scene_mesh(scene, path).mesh, edges);

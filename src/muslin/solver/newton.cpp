@@ -20,19 +20,20 @@ constexpr double slope_share = 0.9;  // approximate Wolfe: the slope must have r
 constexpr double rounding = 1e-12;   // values closer than this (relative) cannot be told apart reliably
 constexpr double smallest_step = 1e-8;
 constexpr double loosest_forcing = 0.1, tightest_forcing = 1e-4;
-/// Shells take this share of the tolerance, within bounds. Looser solves let small buckles go other ways.
+/// Shells use this share of the tolerance, within bounds. With looser solves small buckles develop
+/// differently.
 constexpr double forcing_share = 0.25, tightest_of_shells = 0.05, loosest_of_shells = 0.2;
-/// A step that has not converged by then is tried in halves, or taken and said not to have.
+/// A step that has not converged after this many iterations is repeated in halves, or accepted and reported.
 constexpr int max_iterations = 30, max_exact_iterations = 300;
 
-/// Linear iterations after which float has lost what it solves for.
+/// Linear iterations after which float has lost the solution to rounding.
 constexpr int max_in_float = 1000;
 
-/// Iterations in which friction is lagged anew. Where forces of contact change from one to the next, so does
-/// the minimum, and none would be reached.
+/// Iterations in which friction is lagged at the iterate. Later the minimum would move with the iterates and
+/// not be reached.
 constexpr int renewals = 3;
 
-/// Iterations in which held vertices that are held back push what is in their way.
+/// Iterations in which held vertices that are behind their targets push obstacles.
 constexpr int max_pushes = 6;
 
 class Newton {
@@ -68,7 +69,7 @@ class Newton {
     }
     pcg_.begin_step();
     evaluate();
-    // What falls freely is where it belongs from the first step on, not only as far as a loose solve leads.
+    // Bodies in free fall move exactly from the first step on, although linear solves are loose.
     if (state_.previous_velocities.empty() && std::isfinite(imbalance_.norm)) {
       correct_rigid_motions();
       evaluate();
@@ -88,7 +89,7 @@ class Newton {
     return guard_ ? IncrementalPotential(with_contact_, function_.prediction(), function_.dt()) : function_;
   }
 
-  /// Fills d_ with the way to `free(v)`, held vertices to their targets.
+  /// Fills d_ with the displacement to `free(v)`, of held vertices to their targets.
   template <class Free>
   double aim(const Free& free) {
     for_each_vertex(count_, [&](std::size_t v) {
@@ -132,7 +133,7 @@ class Newton {
     return true;
   }
 
-  /// Unless a potential does not let it.
+  /// Has no effect if a potential does not allow the motion.
   void correct_rigid_motions() {
     std::copy(x_.begin(), x_.end(), there_.begin());
     muslin::correct_rigid_motions(problem_, function_, guard_, g_, x_);
@@ -140,7 +141,7 @@ class Newton {
     if (!(function_.max_step(there_, d_) > 1)) std::copy(there_.begin(), there_.end(), x_.begin());
   }
 
-  /// Everything at x_, contact lagged there.
+  /// Evaluates everything at x_, with contact lagged there.
   void evaluate() {
     at_ = function_.evaluate(x_, workspace_.base);
     take_contact();
@@ -195,7 +196,8 @@ class Newton {
     return good ? done(true) : true;
   }
 
-  /// Springs that buckle make H indefinite. Then loose solves lead nowhere, and tight steps want tight solves.
+  /// Springs that buckle make H indefinite. Then loose solves make no progress, and tight steps need tight
+  /// solves.
   double loosest() const {
     return pcg_.has_springs() ? std::clamp(tolerance_, tightest_forcing, loosest_forcing)
                               : std::clamp(forcing_share * tolerance_, tightest_of_shells, loosest_of_shells);
@@ -207,7 +209,7 @@ class Newton {
     return false;
   }
 
-  /// Moves held vertices that were held back on, pushing what is in their way.
+  /// Moves held vertices that are behind their targets, pushing obstacles.
   void push_held() {
     for_each_vertex(count_, [&](std::size_t v) {
       d_[v] = function_.held(v) ? Vec3(problem_.targets[v] - x_[v]) : Vec3(Vec3::Zero());
@@ -218,7 +220,7 @@ class Newton {
     evaluate();
   }
 
-  /// Solves for a step and goes along it as far as it is safe and the value falls.
+  /// Solves for a step and moves along it as far as that is safe and the value decreases.
   bool move() {
     LinearSettings linear;
     linear.tolerance = forcing_;
@@ -240,7 +242,7 @@ class Newton {
 
   bool search() {
     double slope = limited(1);
-    // What is left of a limited step may lead uphill: a shorter one is limited less.
+    // A limited step may be an ascent direction: a shorter one is limited less.
     for (double share = 0.5; !(slope < 0); share *= 0.5) {
       if (!guard_ || share < smallest_step) return false;
       slope = limited(share);
