@@ -1,4 +1,4 @@
-// The same fabric at every resolution: cloth that hangs by two corners, cloth that drapes over a table.
+// A fabric at several resolutions: cloth that hangs by two corners, cloth that drapes over a table.
 #include <algorithm>
 #include <limits>
 

@@ -94,7 +94,7 @@ Array<double, 2, 3> to_array(const Box& box);
 /// (n, 3) finite numbers; `what` is how messages call them, as in "positions". Errors: usage, saying which
 /// shape or number is wrong.
 std::vector<Vec3> as_vectors(nb::handle array, const std::string& what);
-/// The same with exactly `count` rows.
+/// Converts likewise and checks that there are exactly `count` rows.
 std::vector<Vec3> as_vectors(nb::handle array, const std::string& what, std::size_t count);
 std::vector<Vec2> as_plane_vectors(nb::handle array, const std::string& what);
 Vec3 as_vector(nb::handle array, const std::string& what);

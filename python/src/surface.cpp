@@ -1,4 +1,4 @@
-// What is seen or is thin: contours and shells.
+// Bindings of contours and shells.
 #include <optional>
 
 #include "arrays.hpp"

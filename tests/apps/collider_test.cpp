@@ -153,15 +153,16 @@ TEST(ColliderRun, ResumesWithChangedFrictionOfBodyAndCollider) {
   EXPECT_NEAR(downhill(scratch, 11), 0, 1e-4) << "0.5 holds";
   const std::string held = points();
 
-  // Of the body: with the collider's 0.5 it is 0.1 between them.
+  // The body's friction: with the collider's 0.5 it is 0.1 between them.
   auto outcome = go_on(24, {"body.cloth.friction=0.02"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("resumed with body.0.friction\n"));
   EXPECT_NEAR(acceleration(14, 22), 2.82 - 0.1 * 9.4, 0.02);
-  // What was written stays; only the count of samples in the head of the cache grows.
+  // Written samples stay; only the count of samples in the header of the cache grows.
   EXPECT_EQ(points().substr(32, held.size() - 32), held.substr(32));
 
-  // Of the collider, which had none of its own; the body's is what the file says again. 0.2 between them.
+  // The collider's friction, which was the default; the body's is that of the file again. It is 0.2 between
+  // them.
   outcome = go_on(36, {"collider.slope.friction=0.08"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("resumed with body.0.friction\n"),
@@ -177,7 +178,7 @@ TEST(ColliderRun, ResumesWithChangedFrictionOfBodyAndCollider) {
   EXPECT_EQ(sessions[1]["changed"], (nlohmann::json{"body.0.friction"}));
   EXPECT_EQ(sessions[3]["changed"], (nlohmann::json{"collider.0.friction"}));
 
-  // What is no friction is refused before anything is written.
+  // An invalid friction is refused before anything is written.
   outcome = go_on(70, {"body.cloth.friction=-0.1"});
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("friction"));
@@ -215,7 +216,7 @@ TEST(ColliderRun, CheckListsCrossingsOfTheStart) {
   start.emplace_back("--allow-tangled");
   EXPECT_EQ(run(scratch, start).code, 0);
 
-  // What crosses is said, and a resumed run remembers what it was allowed.
+  // Crossings are reported, and a resumed run keeps the permission.
   const auto json_of_run = [&] { return nlohmann::json::parse(bytes_of(scratch / "run" / "run.json")); };
   EXPECT_EQ(json_of_run()["allow_tangled"], true);
   const RunReader tangled(scratch / "run");

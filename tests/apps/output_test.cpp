@@ -1,4 +1,4 @@
-// What the program writes for people and for other programs: tables, stages, exports, pictures.
+// Output of the program for people and for other programs: tables, stages, exports, pictures.
 #include <map>
 #include <regex>
 

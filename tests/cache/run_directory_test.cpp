@@ -284,7 +284,7 @@ TEST(RunDirectory, IncompleteFramesAfterTheCheckpointAreTruncated) {
   Scratch scratch;
   run_to(scratch / "straight", 6, false);
   run_to(scratch / "run", 3, false, false);
-  // What a kill in the middle of frame 4 leaves: points of one cache, half a sample of another, half a row.
+  // A kill in the middle of frame 4 leaves points of one cache, half a sample of another, half a row.
   std::string skin = bytes_of(scratch / "run/flag.skin.pc2");
   skin += std::string(skin.end() - 8 * 12, skin.end());
   skin[28] = 5;  // the number of samples

@@ -229,7 +229,7 @@ struct PointOverSheet {
     const ContactPotential w(test::distances_at(candidates, q), map, q, {0, 1e-5}, q);
     return -test::gradient(w, q).back();
   }
-  /// Of the sheet at x, z.
+  /// Height of the sheet at x, z.
   double height(double x, double z) const {
     for (const Vec3i& t : sheet.triangles) {
       const auto corner = [&](int k) { return sheet.positions[static_cast<std::size_t>(t[k])]; };
@@ -243,7 +243,7 @@ struct PointOverSheet {
 };
 
 TEST(ContactPotential, CountsEveryContactOnce) {
-  // The same force over faces, edges and corners.
+  // The force is equal over faces, edges and corners.
   const PointOverSheet scene;
   for (const Vec3& over :
        {Vec3(0.23, 0.001, 0.22), Vec3(0.2, 0.001, 0.25), Vec3(0.2, 0.001, 0.2), Vec3(0.25, 0.001, 0.25)})

@@ -335,7 +335,7 @@ TEST(StepLimiter, FreeClothSlidesOverAFloorWithoutLocking) {
 }
 
 TEST(StepLimiter, KeepsTheRequestedShareOfEveryGap) {
-  // What stops short of the floor by itself is stopped there as well.
+  // A motion that ends short of the floor is stopped there as well.
   for (const double share : {0.0, 0.4}) {
     std::mt19937_64 random(3);
     Scene scene = cloth_scene(14);

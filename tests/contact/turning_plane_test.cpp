@@ -73,7 +73,7 @@ TEST(TurningPlane, StopsAtTheEndOfTheSafeMotion) {
   ASSERT_NEAR(over_plane(x).distance, 1, 1e-15);
   const Four falls = {Vec3(5, -2, 0), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   EXPECT_NEAR(safe_fraction_over_plane(x, falls, 0.1), 0.45, 1e-9);
-  // What slides along, or goes away, goes all the way.
+  // Sliding and separating motions are not limited.
   const Four slides = {Vec3(5, 0, 0), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   EXPECT_EQ(safe_fraction_over_plane(x, slides, 1 - 1e-6), 1);
   // Turned about z by 0.1 the plane comes up by 0.1 x.

@@ -224,7 +224,7 @@ TEST_F(SpringDampingTest, FreeFallAndRigidRotationAreNotDamped) {
   std::vector<Vec3> turned;
   for (const Vec3& p : rest_) turned.push_back(Eigen::AngleAxisd(dt * omega.norm(), omega.normalized()) * p);
   const auto rotation = damping_.potential(context(turning, dt));
-  // The same speed along the springs would give forces of about β k |ω| = 9 N.
+  // This speed along the springs would give forces of about β k |ω| = 9 N.
   EXPECT_LE(test::norm(test::gradient(*rotation, turned)), 1e-4);
 }
 

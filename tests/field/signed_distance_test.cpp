@@ -22,7 +22,8 @@ double box_distance(const Box& box, const Vec3& p) {
   return outside.cwiseMax(0).norm() + std::min(0.0, outside.maxCoeff());
 }
 
-// Whether a ray from the point crosses the mesh an odd number of times, in a direction that hits no edge.
+// Returns true if a ray from the point crosses the mesh an odd number of times, in a direction that hits no
+// edge.
 bool odd_crossings(const Mesh& mesh, const std::vector<Vec3i>& triangles, const Vec3& p) {
   const Vec3 direction = Vec3(0.5377, 0.8339, -0.1241).normalized();
   int crossings = 0;

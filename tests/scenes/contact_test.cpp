@@ -117,7 +117,7 @@ TEST(TwistedCylinder, NarrowsAsItTwists) {
 TEST(ReefKnot, HoldsWhenItIsPulled) {
   Watched run("reef_knot", {"pin.0.keyframes=[{ time = 0 }, { time = 0.8, translate = [-0.27, 0, 0] }]",
                             "pin.1.keyframes=[{ time = 0 }, { time = 0.8, translate = [0.27, 0, 0] }]"});
-  // How far the bights reach through one another.
+  // Length by which the bights reach through one another.
   const auto overlap = [&] {
     double left = -INFINITY, right = INFINITY;
     for (const Vec3& x : run.points("left")) left = std::max(left, x.x());

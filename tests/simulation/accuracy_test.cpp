@@ -1,4 +1,4 @@
-// How near the efforts come to the tight solution: cloth that falls on a ball, up to the first folds.
+// Accuracy of the efforts relative to the tight solution: cloth that falls on a ball, up to the first folds.
 #include <cmath>
 #include <vector>
 

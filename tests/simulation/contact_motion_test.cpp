@@ -61,14 +61,14 @@ class Struts : public Potential {
   double k_, length_;
 };
 
-/// How far a solid ball comes down a slope from rest within 0.4 s [m].
+/// Returns the distance that a solid ball rolls down a slope from rest in 0.4 s [m].
 double distance_down(double slope, double friction) {
   test::ContactScene scene(16);
   scene.friction = friction;
   scene.model.scene.solver.tolerance = 1e-6;
   const double radius = 0.1;
   const Vec3 normal(std::sin(slope), std::cos(slope), 0), down(std::cos(slope), -std::sin(slope), 0);
-  // Where the plane carries it: (d̂ − g) k = m g cos(slope).
+  // Height at which the plane carries it: (d̂ − g) k = m g cos(slope).
   const double gap = scene.distance - 9.81 * std::cos(slope) / 1e5;
   const int first = scene.add_turning_ball((radius + gap) * normal, radius, 1);
   scene.add_plane(Vec3::Zero(), normal);

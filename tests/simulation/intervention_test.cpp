@@ -1,5 +1,5 @@
-// What a program may do to a simulation between its steps: put vertices elsewhere, give them other
-// velocities, add forces of its own; and what an exception leaves.
+// Interventions of a program between steps: move vertices, give them other velocities, add forces of its own;
+// and what an exception leaves.
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -31,7 +31,7 @@ Vec3 centre(const Simulation& simulation, std::size_t collider = 0) {
 Vec3 velocity(const Simulation& simulation, std::size_t collider = 0) {
   return mean(body(simulation, collider, simulation.state().velocities));
 }
-/// Of the ball's drawn surface, the farthest from round, in radii.
+/// Returns the largest deviation of the ball's drawn surface from a sphere, in radii.
 double out_of_round(const Simulation& simulation, double radius) {
   const Component& ball = collider_of(simulation, 0);
   std::vector<Vec3> skin(ball.mesh.vertex_count());
@@ -94,7 +94,7 @@ TEST(RigidBody, RestsOnAPlaneAndStaysRound) {
   }
 }
 
-/// How far a box on a slope of 30° has gone after half a second, along it.
+/// Returns the distance that a box slides down a slope of 30° in half a second.
 double slid(double friction) {
   const double tilt = std::numbers::pi / 6;
   const Vec3 normal(-std::sin(tilt), std::cos(tilt), 0), along(-std::cos(tilt), -std::sin(tilt), 0);

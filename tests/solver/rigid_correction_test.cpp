@@ -1,5 +1,5 @@
-// What ends a step that was solved loosely: momenta are exact for each part, and what is left out of balance
-// does no work.
+// Corrections at the end of a loosely solved step: momenta are exact for each part, and what is left out of
+// balance does no work.
 #include "muslin/solver/rigid_correction.hpp"
 
 #include <cmath>

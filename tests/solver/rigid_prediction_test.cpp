@@ -36,7 +36,7 @@ double energy(const State& state) {
   return sum;
 }
 
-/// What a solver does where nothing pushes.
+/// Makes a step without forces, as a solver does.
 void drift(Integrator integrator, double dt, State& state) {
   StepContext context = step_context(integrator, state, dt);
   predict_rigid(integrator, state, 0, context);

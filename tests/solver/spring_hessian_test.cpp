@@ -1,4 +1,4 @@
-// What 8 bytes a coupling keep, and what projecting leaves out.
+// Precision of couplings of 8 bytes, and their projection.
 #include "muslin/solver/spring_hessian.hpp"
 
 #include <cmath>

@@ -163,7 +163,7 @@ class ContactScene {
     model.masses.push_back(mass);
     prescribed_.push_back(0);
   }
-  /// Of the body that is added next.
+  /// Number of the next body.
   int add_point(std::vector<SurfaceMap::Entry> row) {
     bodies_of_points_.push_back(static_cast<int>(bodies.size()));
     rows_.push_back(std::move(row));

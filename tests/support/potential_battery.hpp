@@ -202,7 +202,8 @@ inline void expect_same_bits_for_any_thread_count(const Potential& potential, Co
   EXPECT_EQ(0, std::memcmp(values[0].data(), values[1].data(), values[0].size() * sizeof(double)));
 }
 
-/// What must hold for every potential, at a deformed x. `size` is the length over which W changes much [m].
+/// Checks the properties of every potential, at a deformed x. `size` is the length over which W changes much
+/// [m].
 inline void expect_potential_is_sound(const Potential& potential, ConstVectors x, double size = 1) {
   expect_gradient_matches_value(potential, x, size);
   expect_hessian_matches_gradient(potential, x, size);
@@ -213,7 +214,7 @@ inline void expect_potential_is_sound(const Potential& potential, ConstVectors x
   expect_same_bits_for_any_thread_count(potential, x);
 }
 
-/// What must hold for every elastic energy on top: rest state and rigid motions.
+/// Checks the further properties of every elastic energy: rest state and rigid motions.
 inline void expect_elastic_energy_is_sound(const Potential& potential, ConstVectors rest, ConstVectors x,
                                            double size = 1) {
   expect_potential_is_sound(potential, x, size);

@@ -48,7 +48,7 @@ class SceneRun {
     throw std::invalid_argument("no probe " + name);
   }
 
-  /// Where the lowest vertex was at rest.
+  /// Rest position of the lowest vertex.
   Vec3 rest_of_lowest() const {
     const auto lowest = std::min_element(now().begin(), now().end(),
                                          [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); });

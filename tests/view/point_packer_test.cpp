@@ -9,7 +9,7 @@
 namespace muslin {
 namespace {
 
-/// What the page does, written from the format in the header.
+/// Decodes as the page does, written from the format in the header.
 std::vector<std::vector<Vec3>> unpack(const std::string& record, int frames, std::size_t points,
                                       const Vec3& low, const Vec3& size) {
   std::vector<std::vector<Vec3>> result;

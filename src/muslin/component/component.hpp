@@ -67,7 +67,7 @@ struct CachedPoints {
   const Embedding* embedding = nullptr;
 };
 
-/// How views show a component.
+/// Appearance of a component in views.
 struct Appearance {
   std::optional<Vec3> colour = std::nullopt;  ///< sRGB 0…1; none: from the palette
   std::string shape = "";                     ///< of a collider, such as "plane"; empty: not a collider

@@ -17,7 +17,7 @@ struct ContactModel {
   std::shared_ptr<const SurfaceMap> map;  ///< the surface's points from all vertices of the model
   std::vector<Vec3> rest;                 ///< #P by 3, points of the surface at rest [m]
   double distance = 2e-3;                 ///< d̂, the gap below which contact acts [m]
-  double friction = 0;                    ///< Coulomb's μ of bodies without one of their own
+  double friction = 0;                    ///< default of Coulomb's μ
   StepLimits limits;                      ///< gap floor; prescribed vertices, rigid groups
   // For messages; may be empty.
   std::vector<std::string> names;  ///< of the surface's bodies

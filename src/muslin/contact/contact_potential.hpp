@@ -31,7 +31,7 @@
 namespace muslin {
 
 struct Friction {
-  double coefficient = 0;      ///< Coulomb's μ of bodies without one of their own
+  double coefficient = 0;      ///< default of Coulomb's μ
   double stick_length = 1e-5;  ///< slip at which friction is full [m]
   double dt = stopping_time;   ///< time in which contact stops rigid bodies [s]
 };

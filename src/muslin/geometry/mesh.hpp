@@ -18,7 +18,7 @@ namespace muslin {
 struct MeshGroup {
   std::string name;
   std::vector<int> faces;     ///< indices of faces
-  std::vector<int> vertices;  ///< indices of the vertices of those faces, or a vertex group of its own
+  std::vector<int> vertices;  ///< vertices of those faces, or of a vertex group
 };
 
 struct MUSLIN_API Mesh : Topology {

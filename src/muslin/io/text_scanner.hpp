@@ -41,7 +41,7 @@ class TextScanner {
   std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
   /// Throws Error(input) at a word of this line, or at the line if the word is empty.
   [[noreturn]] void fail(std::string_view word, std::string problem, std::string remedy) const;
-  /// The same for a line read earlier.
+  /// Throws Error(input) at a line read earlier.
   [[noreturn]] void fail_at(int line, std::string problem, std::string remedy) const;
 
  private:

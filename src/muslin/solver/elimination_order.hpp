@@ -35,8 +35,8 @@ class EliminationOrder {
     std::uint8_t kind = 0;
     std::uint16_t used = 0;  ///< bit l: lane l has a coupling
   };
-  /// The same couplings from their earlier ends: where bit l of used[i] is set, lane l of the group is
-  /// coupled to position l + position[i] by lane l + shift[i] of block[i].
+  /// The couplings from their earlier ends: where bit l of used[i] is set, lane l of the group is coupled to
+  /// position l + position[i] by lane l + shift[i] of block[i].
   struct Link {
     std::array<int, 2> position{}, block{};
     std::array<std::uint16_t, 2> used{};
