@@ -1,4 +1,4 @@
-"""What an artist should know about a mesh before baking, in Blender's words. No Blender needed."""
+"""Notices about a mesh before baking, in Blender's terms. Needs no Blender."""
 
 from dataclasses import dataclass
 
@@ -64,20 +64,20 @@ def of_polygons(sizes, name):
 
 
 def problem_line(stderr):
-    """The error that muslin printed, without its own name: the last line that begins `muslin: `."""
+    """Returns the error that muslin printed: the last line that begins with `muslin: `, without that prefix."""
     lines = [line for line in stderr.splitlines() if line.startswith("muslin: ")]
     errors = [line for line in lines if not line.startswith(("muslin: warning: ", "muslin: resumed with "))]
     return errors[-1][len("muslin: "):] if errors else ""
 
 
 def split_problem(text):
-    """(what is wrong, what to do) of an error `…; remedy`."""
+    """Returns (problem, remedy) of an error `…; remedy`."""
     what, mark, remedy = text.rpartition("; ")
     return (what, remedy) if mark else (text, "")
 
 
 def estimate_voxels(area, volume, closed, thickness, width):
-    """About how many voxels a lattice has: what is inside, and half a voxel all over the surface."""
+    """Estimates the number of voxels of a lattice: the volume inside, and half a voxel over the whole surface."""
     if width <= 0:
         return 0
     if closed and volume > 0:
@@ -87,7 +87,7 @@ def estimate_voxels(area, volume, closed, thickness, width):
 
 
 def suggest_width(area, volume, closed, thickness, target=8000):
-    """The voxel width that gives about `target` voxels, to two digits."""
+    """Returns the voxel width that gives about `target` voxels, to two digits."""
     if area <= 0:
         return 0.0
     low, high = 1e-9 * area**0.5, 10 * area**0.5

@@ -1,4 +1,4 @@
-"""From Blender's world (z up, scene units) to muslin's (y up, metres) and back. No Blender needed.
+"""Converts from Blender's world (z up, scene units) to muslin's (y up, metres) and back. Needs no Blender.
 
     x_muslin = s · (x, z, −y)          s: metres per scene unit
 

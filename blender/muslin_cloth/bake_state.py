@@ -53,14 +53,14 @@ class State:
 
 @dataclass(frozen=True)
 class Bake:
-    """The artist wants frames 0 to `total`, from the first on."""
+    """A bake of frames 0 to `total` is requested."""
 
     total: int
 
 
 @dataclass(frozen=True)
 class BakeFrom:
-    """Frames up to `frame` stay, those behind it up to `total` are made anew with the scene as it now is."""
+    """Frames up to `frame` stay; later ones up to `total` are simulated again with the current scene."""
 
     frame: int
     total: int
@@ -68,7 +68,7 @@ class BakeFrom:
 
 @dataclass(frozen=True)
 class Resume:
-    """Goes on where a bake was cut off, with the scene as it was."""
+    """Continues an interrupted bake, with the scene as it was."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Progressed:
 
 @dataclass(frozen=True)
 class WorkerEnded:
-    """`code` as the program exits, negative for a signal; `frame` is the last that is whole."""
+    """`code` is the exit code, negative for a signal; `frame` is the last complete frame."""
 
     code: int
     frame: int
@@ -107,7 +107,7 @@ class WorkerEnded:
 
 @dataclass(frozen=True)
 class Opened:
-    """What lies on the disk when a file is opened. `alive`: a worker of an earlier Blender is still at work."""
+    """The files found on disk when a .blend file is opened. `alive`: a worker of an earlier Blender still runs."""
 
     frame: int = -1
     total: int = 0
@@ -130,12 +130,12 @@ class StartCapture:
 
 @dataclass(frozen=True)
 class Abandon:
-    """Ends the check or the capture in work; what it wrote is thrown away."""
+    """Ends the running check or capture and discards its files."""
 
 
 @dataclass(frozen=True)
 class StartWorker:
-    """`origin` FRESH: from the start; a frame: back to it and on with the new scene; None: from the last state."""
+    """`origin` FRESH: from the start; a frame: from there with the new scene; None: from the last state."""
 
     origin: object
 
@@ -159,12 +159,12 @@ class Show:
 
 @dataclass(frozen=True)
 class RemoveBake:
-    """Files and playback go away."""
+    """Removes files and playback."""
 
 
 @dataclass(frozen=True)
 class Tell:
-    """A sentence for the artist that changes nothing."""
+    """Shows a sentence to the user without a change of state."""
 
     text: str
 
@@ -175,7 +175,7 @@ EXIT_DONE, EXIT_USAGE, EXIT_INPUT, EXIT_SOLVER, EXIT_FILE, EXIT_INTERRUPTED = 0,
 
 
 def at_rest(state, problem=""):
-    """The state when nothing is in work, as the frames tell."""
+    """Returns the idle state that the frames imply."""
     if problem:
         phase = Phase.FAILED
     elif state.frame < 0:

@@ -1,4 +1,4 @@
-"""From Blender's scene to the files muslin reads."""
+"""Writes the files that muslin reads from Blender's scene."""
 
 import contextlib
 import os
@@ -17,7 +17,7 @@ PIN_WEIGHT = 0.5
 
 
 class Problem(Exception):
-    """What keeps a scene from being baked; the text names the object and the remedy."""
+    """A reason why a scene cannot be baked; the text names the object and the remedy."""
 
 
 def cloth_objects(scene):
@@ -35,7 +35,7 @@ def field_objects(scene):
 
 
 def own_friction(obj):
-    """None where the scene's is meant."""
+    """None if the scene's setting applies."""
     return obj.muslin.friction if obj.muslin.use_friction else None
 
 
@@ -121,7 +121,7 @@ class Snapshot:
 
 
 def uv_areas(uvs, sizes):
-    """Whether each polygon has an area in the texture."""
+    """Returns for each polygon whether it has an area in the texture."""
     first = np.concatenate([[0], np.cumsum(sizes)[:-1]])
     following = np.arange(1, len(uvs) + 1)
     following[first + sizes - 1] = first
@@ -141,7 +141,7 @@ def pin_group_index(obj):
 
 
 def require_ready(scene):
-    """What can be said before anything is evaluated. Problem otherwise."""
+    """Makes the checks that need no evaluation. Raises Problem."""
     if not bpy.data.filepath:
         raise Problem("Save the file first: the bake is stored in a folder beside it")
     if not cloth_objects(scene):
@@ -166,7 +166,7 @@ def snapshot(obj, depsgraph, topology=False):
 
 
 def notices_of(obj, taken):
-    """What Blender alone knows."""
+    """Notices from data that only Blender has."""
     notices = []
 
     def say(level, text):
@@ -202,7 +202,7 @@ def fields_notices(scene):
 
 
 class Air:
-    """Wind and turbulence fields together are one moving air; [m/s]."""
+    """Combines wind and turbulence fields into one velocity of the air [m/s]."""
 
     def __init__(self, scene):
         self.velocities, self.gust, self.gust_length, self.seed = [], 0.0, 0.0, 1
@@ -350,13 +350,13 @@ class Capture:
             (folder / cloth.rest_mesh).write_text(taken.obj(self.scale, points), encoding="utf-8")
 
     def follows(self, name):
-        """Whether the object's points are wanted in every frame."""
+        """Returns true if the object's points are needed in every frame."""
         if name not in self.cloths:
             return True
         return bool(self.snapshots[name].pinned) and bpy.data.objects[name].muslin.pin_animated
 
     def step(self, seconds):
-        """Samples frames for about so long; True when all are there."""
+        """Samples frames for about this long; True when all are done."""
         end = time.monotonic() + seconds
         scene = self.scene()
         with below_the_cloth(cloth_objects(scene)), at_frame(scene, self.frame):

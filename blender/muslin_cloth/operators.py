@@ -1,4 +1,4 @@
-"""The buttons. From a button a bake runs beside Blender; called by a script it blocks until the bake is done."""
+"""The operators. A button starts a bake in the background; a call from a script blocks until the bake is done."""
 
 import bpy
 from bpy.types import Operator

@@ -16,7 +16,7 @@ ICONS = {ERROR: "CANCEL", WARNING: "ERROR", "INFO": "INFO"}
 
 
 def paragraph(layout, text, width, icon="NONE", alert=False):
-    """Text over as many lines as the panel needs; Blender has no label that wraps."""
+    """Draws text over several lines; Blender has no label that wraps."""
     column = layout.column(align=True)
     column.scale_y = 0.8
     column.alert = alert
@@ -228,7 +228,7 @@ class PHYSICS_PT_muslin_scene(ClothPanel, Panel):
 
 
 def draw_add(self, context):
-    """Two more buttons among Blender's own kinds of physics."""
+    """Adds two buttons to Blender's kinds of physics."""
     obj = context.object
     if not obj or obj.type != "MESH":
         return

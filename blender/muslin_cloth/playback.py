@@ -20,7 +20,7 @@ def modifier_of(obj):
 
 
 def own_folder(scene):
-    """Where a bake of this file goes."""
+    """Returns the folder for bakes of this file."""
     stem = pathlib.Path(bpy.data.filepath).stem
     safe = "".join(c if c.isalnum() or c in "-_ " else "_" for c in scene.name)
     return pathlib.Path(bpy.path.abspath("//")) / f"muslin_{stem}" / safe
@@ -93,7 +93,7 @@ class Playback:
         return point_cache.Writer(path, points, keep)
 
     def show(self, frame):
-        """Brings the played caches to `frame`: what is missing is added, what lies behind it is cut off."""
+        """Extends or truncates the played caches to `frame`."""
         for item in self.description["objects"]:
             body = item["body"]
             if body not in self._writers:
@@ -125,7 +125,7 @@ class Playback:
 
 
 def ensure_modifier(obj):
-    """Adds a Mesh Cache modifier behind all that deform the cloth and before what only refines it."""
+    """Adds a Mesh Cache modifier after all modifiers that deform the cloth and before those that refine it."""
     cache = modifier_of(obj)
     if cache:
         return cache
@@ -152,7 +152,7 @@ SETTINGS = {"cache_format": "PC2", "deform_mode": "OVERWRITE", "time_mode": "FRA
 
 
 def attach(obj, path, frame_start):
-    """Sample n is shown in frame frame_start + n. What is as it should be is left alone."""
+    """Shows sample n in frame frame_start + n. Settings that are already right are not touched."""
     cache = ensure_modifier(obj)
     wanted = dict(SETTINGS, filepath=bpy.path.relpath(str(path)), frame_start=float(frame_start))
     for name, value in wanted.items():
@@ -170,7 +170,7 @@ def detach(scene):
 
 
 def remove_files(folder):
-    """Takes away what a bake left in its folder, and nothing else."""
+    """Removes the files of a bake from its folder, and nothing else."""
     folder = pathlib.Path(folder)
     description = read_description(folder) or {"objects": [], "files": []}
     names = [*description["files"], *(f"{o['body']}.pc2" for o in description["objects"]), "worker.log", DESCRIPTION]

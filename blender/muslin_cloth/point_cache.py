@@ -11,7 +11,7 @@ MAGIC = b"POINTCACHE2\0"
 
 
 class Reader:
-    """Samples of a cache that may still grow; ValueError if the file is none."""
+    """Reads samples of a cache that may still grow; ValueError if the file is not a cache."""
 
     def __init__(self, path):
         self.path = path
@@ -28,7 +28,7 @@ class Reader:
         return points, samples
 
     def samples(self):
-        """Whole samples that are there now."""
+        """Number of complete samples at present."""
         _, promised = self._header()
         if self.points == 0:
             return promised
@@ -68,7 +68,7 @@ class Writer:
         self._write_header()
 
     def cut(self, samples):
-        """Forgets those behind the first `samples`."""
+        """Drops all but the first `samples` samples."""
         if samples < self.samples:
             self.samples = samples
             self._write_header()

@@ -1,4 +1,4 @@
-"""Where the muslin program is."""
+"""Preferences: the path of the muslin program."""
 
 import bpy
 from bpy.props import IntProperty, StringProperty

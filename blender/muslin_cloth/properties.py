@@ -1,4 +1,4 @@
-"""What the artist sets, kept in the .blend file."""
+"""The user's settings, stored in the .blend file."""
 
 import bpy
 from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,

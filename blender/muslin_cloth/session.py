@@ -1,4 +1,4 @@
-"""A bake of one Blender scene: carries out what bake_state.transition says, and tells it what happens."""
+"""A bake of one Blender scene: carries out the effects of bake_state.transition and reports events to it."""
 
 import json
 import time
@@ -32,7 +32,7 @@ class Session:
         if bpy.data.filepath:
             self.open(scene)
 
-    # What lies on the disk
+    # State on disk
 
     def open(self, scene):
         folder = playback.playing_folder(scene) or playback.own_folder(scene)
@@ -69,7 +69,7 @@ class Session:
         return (time.monotonic() - began) / done * (self.state.total - self.state.frame)
 
     def progress(self):
-        """(share, text) of what is in work."""
+        """(fraction, text) of the running task."""
         phase, state = self.state.phase, self.state
         if phase == bs.Phase.CHECKING:
             return 0.0, "Checking"
@@ -186,7 +186,7 @@ class Session:
                 self.notices.append(Notice(WARNING, text[:1].upper() + text[1:], names.get(body, "")))
 
     def check(self):
-        """Only looks; bakes nothing."""
+        """Checks without baking."""
         if self.state.busy:
             return "A bake is running: cancel it first"
         failed = self._start_check()
@@ -279,7 +279,7 @@ class Session:
     # The clock
 
     def tick(self):
-        """Looks once at what is in work; True while there is something."""
+        """Polls the running task once; True while there is one."""
         if self.question and self.question.done():
             problem = self._finish_check()
             if self._checked_only:
@@ -321,7 +321,7 @@ class Session:
         mark_changed()
 
     def _has_begun(self):
-        """Until then the caches of a run that is gone back on hold frames that will be cut off."""
+        """Until then the caches of a run that is resumed from an earlier frame hold frames that will be removed."""
         if self._sessions_before >= 0 and sessions_of(self.folder / "run") > self._sessions_before:
             self._sessions_before = -1
         return self._sessions_before < 0
@@ -333,7 +333,7 @@ class Session:
         redraw()
 
     def stop(self):
-        """Blender goes, or opens another file: the worker stops too, and can be resumed."""
+        """Blender closes or opens another file: the worker stops too, and can be resumed."""
         self._abandon()
         if self.worker:
             self.worker.interrupt()
@@ -341,7 +341,7 @@ class Session:
             self.playback.close()
 
 
-# What the command line calls otherwise than the panel.
+# Terms that the command line and the panel name differently.
 WORDS = (("restart the run without --resume", "use Bake, from the start"),
          ("restart the run", "use Bake, from the start"), ("time.steps_per_frame", "Steps per Frame"),
          ("`steps_per_frame`", "Steps per Frame"), ("`voxel_width`", "Voxel Width"), ("voxel_width", "Voxel Width"),
@@ -395,7 +395,7 @@ def remove_if_empty(folder):
 
 
 def mark_changed():
-    """The modifiers were set behind Blender's back: it should ask to save before it closes."""
+    """Marks the file as changed after modifiers were set by the add-on, so that Blender asks to save it."""
     windows = bpy.context.window_manager.windows
     if not bpy.app.background and len(windows):
         with bpy.context.temp_override(window=windows[0]):
@@ -440,7 +440,7 @@ def start_clock():
 
 
 def wait(session):
-    """Blocks until nothing is in work: for scripts and Blender without a window."""
+    """Blocks until no task is running: for scripts and Blender without a window."""
     try:
         while session.tick():
             time.sleep(0.02)
@@ -450,7 +450,7 @@ def wait(session):
             time.sleep(0.02)
 
 
-# What Blender does under us
+# Handlers of Blender's events
 
 
 @bpy.app.handlers.persistent
@@ -470,7 +470,7 @@ def before_load(*_):
 
 @bpy.app.handlers.persistent
 def on_undo(*_):
-    """Undo takes settings back, not files: playback stays what was baked."""
+    """Undo reverts settings, not files: playback keeps the bake."""
     for session in sessions.values():
         session.attach()
 

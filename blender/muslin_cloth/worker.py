@@ -1,4 +1,4 @@
-"""The muslin program as a process of its own. No Blender needed."""
+"""Runs the muslin program as a separate process. Needs no Blender."""
 
 import json
 import os
@@ -18,7 +18,7 @@ PROGRAM = "muslin.exe" if sys.platform == "win32" else "muslin"
 
 
 def find_program(preferred=""):
-    """The one of the preferences, one that lies beside the add-on, or one on the PATH; "" if there is none."""
+    """Returns the program of the preferences, or beside the add-on, or on the PATH; "" if there is none."""
     bundled = pathlib.Path(__file__).parent / "bin" / PROGRAM
     for candidate in (preferred, str(bundled)):
         if candidate and os.path.isfile(candidate) and os.access(candidate, os.X_OK):
@@ -75,7 +75,7 @@ class Question:
 
 
 class Worker:
-    """A run of its own: it survives Blender if Blender crashes."""
+    """A separate process that survives a crash of Blender."""
 
     def __init__(self, program, words, log):
         with open(log, "wb") as out:
@@ -84,7 +84,7 @@ class Worker:
         self.log, self.pid = log, self._process.pid
 
     def ended(self):
-        """Exit code, negative for a signal, or None while it is at work."""
+        """Exit code, negative for a signal, or None while it runs."""
         return self._process.poll()
 
     def interrupt(self):
@@ -151,7 +151,7 @@ def read_log(path):
 
 
 def is_locked(run):
-    """Whether a process writes this run directory now."""
+    """Returns true if a process is writing this run directory."""
     lock = pathlib.Path(run) / "checkpoint" / "lock"
     if fcntl is None or not lock.exists():
         return False

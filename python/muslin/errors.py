@@ -1,4 +1,4 @@
-"""What goes wrong, told so that the reader can mend it."""
+"""Errors, each with a problem and a remedy."""
 
 
 class Error(Exception):
@@ -8,14 +8,14 @@ class Error(Exception):
     """
 
     exit_code: int = 1
-    """With which the program ``muslin`` ends for such an error."""
+    """Exit code of the program ``muslin`` for such an error."""
 
     def __init__(self, problem: str, remedy: str = "", file: str = "", line: int = 0, column: int = 0) -> None:
         super().__init__(problem, remedy, file, line, column)
         self.problem = problem
-        """What is wrong."""
+        """The problem."""
         self.remedy = remedy
-        """What to do about it."""
+        """The remedy."""
         self.file = file
         """The file it is in, empty if unknown."""
         self.line = line
@@ -57,6 +57,6 @@ class FileError(Error):
 
 
 class Interrupted(Error):
-    """Stopped because ``cancel`` returned true; what was being done can be taken up again."""
+    """Stopped because ``cancel`` returned true; the work can be continued."""
 
     exit_code = 130

@@ -53,7 +53,7 @@ def _tables(tables: object) -> Mapping[str, Any]:
 
 
 def _with_paths(value: Any, meshes: dict[str, Mesh]) -> Any:
-    """The same with each mesh replaced by a path, under which it is put into ``meshes``."""
+    """Returns the tables with each mesh replaced by a path, under which it is stored in ``meshes``."""
     if isinstance(value, Mesh):
         path = f"{value.name or 'mesh'}.{len(meshes)}"
         meshes[path] = value
@@ -66,7 +66,7 @@ def _with_paths(value: Any, meshes: dict[str, Mesh]) -> Any:
 
 
 def _is_value(value: Any) -> bool:
-    """Whether it goes behind ``key =`` rather than under a heading."""
+    """Returns true if the value is written after ``key =`` and not under a heading."""
     if value is None or isinstance(value, Mapping):
         return False
     return not (isinstance(value, list | tuple) and value and all(isinstance(item, Mapping) for item in value))
