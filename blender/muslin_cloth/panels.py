@@ -92,7 +92,7 @@ def draw_state(layout, scene, session, state, width):
             text += f" of {first + state.total}"
         box.label(text=text, icon="CHECKMARK")
         if session.folder and bpy.data.filepath and session.folder != own_folder(scene):
-            paragraph(box, f"Plays the bake of another file, in {session.folder.parent.name}. Bake makes a new one for this file.",
+            paragraph(box, f"Plays the bake of another file, in {session.folder.parent.name}. Bake makes a new one.",
                       width, "INFO")
     elif not state.problem:
         box.label(text="Nothing is baked" if bpy.data.filepath else "Save the file, then bake", icon="INFO")

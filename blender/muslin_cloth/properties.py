@@ -76,9 +76,11 @@ class MuslinScene(bpy.types.PropertyGroup):
     air_density: FloatProperty(
         name="Air Density", default=1.2, min=0, soft_max=10, description="kg/m³; 0 is a vacuum, without wind and drag")
     use_contact: BoolProperty(
-        name="Contact", default=True, description="Contact of cloth with itself, other cloth and colliders, without crossings")
+        name="Contact", default=True,
+        description="Contact of cloth with itself, other cloth and colliders, without crossings")
     effort: EnumProperty(
-        name="Effort", default="NORMAL", description="How accurately steps are solved; surfaces do not cross at any effort",
+        name="Effort", default="NORMAL",
+        description="How accurately steps are solved; surfaces do not cross at any effort",
         items=[("DRAFT", "Draft", "To see whether a scene works"),
                ("NORMAL", "Normal", "For pictures"),
                ("EXACT", "Exact", "For measurements: slower by far")])
@@ -87,7 +89,7 @@ class MuslinScene(bpy.types.PropertyGroup):
         description="Coulomb's coefficient of cloth and colliders without Own Friction")
     keep_states: BoolProperty(
         name="Keep States", default=True,
-        description="Keep the state of every frame, so that a bake can continue from any of them: 96 bytes per vertex and frame")
+        description="Keep the state of every frame, to continue a bake from any of them: 96 bytes per vertex and frame")
 
     def steps(self):
         """Steps a frame; None if they are automatic."""
