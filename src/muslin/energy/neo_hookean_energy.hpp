@@ -1,4 +1,4 @@
-// NeoHookeanEnergy is the elastic energy of the tetrahedra of a lattice, six a voxel, with the law of
+// NeoHookeanEnergy is the elastic energy of the tetrahedra of a lattice, six per voxel, with the law of
 // neo_hookean_law.hpp:
 //
 //   W = Σ f V ψ(F),   V = width³/6

@@ -53,7 +53,7 @@ class ShellBending : public ElementEnergy {
   /// Returns true if `scale` K is so large relative to the masses that linear systems need more than Λ.
   bool is_stiff(double scale, std::span<const double> masses, std::span<const std::uint8_t> fixed) const;
   void load(std::span<const double> of_hinge, int first, int count, double* lanes) const;
-  /// Adds `scale` Jᵀ Λ J to `blocks`; sets J, four vectors a hinge, unless null.
+  /// Adds `scale` Jᵀ Λ J to `blocks`; sets J, four vectors per hinge, unless null.
   void assemble(ConstVectors x, double scale, PairBlocks blocks, Float4* gradients) const;
 
   Slabs slabs_;
