@@ -44,8 +44,8 @@ Value parallel_sum(std::size_t count, std::size_t grain, Value zero, const Body&
   return sum;
 }
 
-/// Returns what body(begin, end, out) appends to `out` (a std::vector<Value>) for the blocks of parallel_for,
-/// in their order.
+/// Returns the values that body(begin, end, out) appends to `out` (a std::vector<Value>) for the blocks of
+/// parallel_for, in their order.
 template <class Value, class Body>
 std::vector<Value> parallel_collect(std::size_t count, std::size_t grain, const Body& body) {
   std::vector<Value> all;

@@ -17,7 +17,7 @@
 #endif
 #define MUSLIN_INLINE [[gnu::always_inline]] inline
 
-/// Put before a loop, states that no iteration reads what another one writes.
+/// Put before a loop, states that no iteration reads data that another one writes.
 #if defined(__clang__)
 #define MUSLIN_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #elif defined(__GNUC__)

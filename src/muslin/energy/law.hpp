@@ -2,7 +2,7 @@
 // deformation of a tetrahedron. It is a struct without data:
 //
 //   Constants     doubles only, derived from the parameters once for each element
-//   parameters    what a user gives: name, unit, range, sentence
+//   parameters    given by the user: name, unit, range, sentence
 //   energy, …     ψ and its derivatives, as the stencil of the element asks for them
 //
 // All functions are of one element and forced inline, so that the stencil's loops over lanes vectorise.

@@ -47,7 +47,7 @@ class EnclosedVolume {
   /// From with_centres, relative to the surface's first vertex: a sum over closed surfaces does not depend on
   /// it.
   std::vector<Vec3> relative(ConstVectors x) const;
-  /// to += factor × what falls on each vertex; the shares of the centres go to their rims.
+  /// to += factor × the share of each vertex; the shares of the centres are divided among their rims.
   template <class Share>
   void add_to_vertices(double factor, const Share& share, Vectors to) const;
 

@@ -1,5 +1,6 @@
-// History stores what loads keep from step to step, such as plastic angles: named arrays of numbers, usually
-// one number per element. It is part of the State: it is saved with it and restored when a step is rejected.
+// History stores internal variables of loads from step to step, such as plastic angles: named arrays of
+// numbers, usually one number per element. It is part of the State: it is saved with it and restored when a
+// step is rejected.
 #pragma once
 
 #include <cstdint>

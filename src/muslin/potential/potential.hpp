@@ -68,8 +68,8 @@ class MUSLIN_API Load {
   virtual ~Load() = default;
   virtual std::unique_ptr<Potential> potential(const StepContext& step) const = 0;
 
-  /// Ends a step at x. `potential` is the one that this load yielded for the step. Writes what later steps
-  /// need into `history`.
+  /// Ends a step at x. `potential` is the one that this load yielded for the step. Writes data for later
+  /// steps into `history`.
   virtual void end_step(const Potential& potential, ConstVectors x, History& history) const {
     (void)potential, (void)x, (void)history;
   }

@@ -28,7 +28,7 @@ class CoupledForms {
   std::size_t first_ = 0;
   float factor_ = 0;
   Buffer<Float4> gradients_;
-  Buffer<float> along_, moments_;  // by form: g·p and what multiplies g
+  Buffer<float> along_, moments_;  // by form: g·p and the factor of g
 };
 
 }  // namespace muslin

@@ -6,8 +6,7 @@
 // potentials.
 //
 // It is the HessianSink to which potentials add themselves (Potential::linearize): springs become couplings,
-// pair blocks matrices, contacts relative stiffness; what is added as a general potential is multiplied in
-// double.
+// pair blocks matrices, contacts relative stiffness; general potentials are multiplied in double.
 #pragma once
 
 #include <cstddef>

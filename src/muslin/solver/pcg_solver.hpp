@@ -15,7 +15,7 @@ namespace muslin {
 
 class PcgSolver {
  public:
-  /// Begins a step and drops what depends on earlier steps.
+  /// Begins a step and drops data from earlier steps.
   void begin_step() {
     iterations_a_decade_ = 0;
     assembled_ = false;
