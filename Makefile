@@ -28,10 +28,13 @@ test: python-env $(BUILD)/build.ninja    ## every test
 	cmake --build $(BUILD) -j $(JOBS)
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
 
+# Clang 16 or later.
+CLANG ?= $(shell command -v clang++-19 || command -v clang++)
+
 asan tsan:        ## every test under a sanitizer
-	cmake --preset $@
+	cmake --preset $@ -DCMAKE_CXX_COMPILER=$(CLANG)
 	cmake --build build/$@ -j $(JOBS)
-	ctest --test-dir build/$@ -j $(JOBS) --output-on-failure
+	ctest --preset $@ -j $(JOBS)
 
 test-hosts: build ## the Blender add-on as an extension of 4.2, USD and Alembic: fetches the bpy module, 520 MB, once
 	tools/test_bpy $(BUILD)/muslin
@@ -45,13 +48,11 @@ build-time:       ## the processor time from a bare checkout to the program
 blender-addon:    ## out/muslin-blender-VERSION.zip, for Blender 3.4 and later
 	blender/package
 
-# Clang 16 or later.
-CLANG ?= $(shell command -v clang++-19 || command -v clang++)
 FUZZ_SECONDS ?= 20
 
 fuzz:             ## every fuzzer for FUZZ_SECONDS each; inputs that fail are left in build/
-	cmake --preset fuzz -DCMAKE_CXX_COMPILER=$(CLANG)
-	cmake --build build/fuzz -j $(JOBS)
+	cmake --preset fuzz -DCMAKE_CXX_COMPILER=$(CLANG) $(if $(CI),-DMUSLIN_WERROR=ON)
+	cmake --build build/fuzz -j $(JOBS) --target fuzzers
 	tests/fuzz/run build/fuzz/tests/fuzz $(FUZZ_SECONDS)
 
 tidy:             ## clang-tidy over the sources that have changed since TIDY_SINCE, or all
