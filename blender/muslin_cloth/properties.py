@@ -1,10 +1,11 @@
-"""The user's settings, stored in the .blend file."""
+"""The user's settings, stored in the .blend file. Sentences, ranges and defaults of settings that the scene file has
+too come from its schema (keys.py)."""
 
 import bpy
 from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
                        StringProperty)
 
-from . import fabrics
+from . import fabrics, keys
 
 
 def suggest_fabrics(props, _context, text):
@@ -21,18 +22,18 @@ class MuslinObject(bpy.types.PropertyGroup):
                             ("COLLIDER", "Collider", "An obstacle for muslin cloth, static or animated")])
     model: EnumProperty(
         name="Kind", description="How the mesh is simulated",
-        items=[("SHELL", "Cloth", "The mesh itself is thin cloth"),
-               ("LATTICE", "Solid", "The mesh is filled with voxels: for bodies with a volume or a thickness")])
+        items=[("SHELL", "Cloth", keys.meaning("body", "model", "shell")),
+               ("LATTICE", "Solid", keys.meaning("body", "model", "lattice"))])
     fabric: StringProperty(
         name="Fabric", default="cotton", description="A material of muslin, or the path of a material file",
         search=suggest_fabrics, search_options={"SUGGESTION"})
     thickness: FloatProperty(
         name="Thickness", subtype="DISTANCE", min=0, soft_max=1, precision=4, update=drop_estimate,
-        description="Thickness of cloth in contact, or of a solid made from an open mesh. 0 uses the default: "
-                    "0.5 mm, or one voxel width")
+        description=f"Of cloth: {keys.sentence('body', 'thickness', model='shell')}. Of a solid: "
+                    f"{keys.sentence('body', 'thickness', model='lattice')}. 0 uses the default")
     voxel_width: FloatProperty(
         name="Voxel Width", subtype="DISTANCE", min=0, soft_max=10, precision=4,
-        description="Half of it shows twice the detail and takes about eight times as long; 0 takes a suggestion")
+        description=f"{keys.sentence('body', 'voxel_width')}. 0 uses the default")
     pin_group: StringProperty(name="Pin Group", description="Vertices of weight 0.5 or more are held")
     pin_animated: BoolProperty(
         name="Follow Animation", default=True,
@@ -41,18 +42,20 @@ class MuslinObject(bpy.types.PropertyGroup):
     use_release: BoolProperty(name="Release", description="The pins let go after a frame")
     release_frame: IntProperty(name="Release Frame", default=50)
     use_self_contact: BoolProperty(
-        name="Self Contact", default=True, description="Touches itself; takes time where it does")
+        name="Self Contact", default=keys.default("body", "self_contact"),
+        description=keys.sentence("body", "self_contact"))
     use_friction: BoolProperty(
         name="Own Friction", description="Use a separate friction for this surface instead of the scene's")
     friction: FloatProperty(
-        name="Friction", default=0.3, min=0, max=100, soft_max=1,
-        description="Coulomb's coefficient of this surface; a pair of surfaces has the geometric mean of both")
+        name="Friction", default=keys.default("contact", "friction"), soft_max=1, **keys.limits("body", "friction"),
+        description=keys.sentence("body", "friction"))
     use_stretch_limit: BoolProperty(
         name="Limit Stretch", description="The cloth becomes stiff before any part is stretched beyond a limit")
     stretch_limit: FloatProperty(
-        name="Stretch Limit", default=1.05, min=1.001, max=10, soft_min=1.01, soft_max=1.5, precision=3, step=1,
-        description="Largest stretch of any part, as length over rest length: 1.05 allows 5 %. Keeps weak "
-                    "fabrics from sagging where they are held; values below 1.01 take long")
+        name="Stretch Limit", default=1.05, soft_min=1.01, soft_max=1.5, precision=3, step=1,
+        **keys.limits("body", "stretch_limit"),
+        description=f"{keys.sentence('body', 'stretch_limit')}. Keeps weak fabrics from sagging where they are held; "
+                    "less than 1.01 takes long")
     rest_shape: EnumProperty(
         name="Rest Shape", description="The stress-free shape",
         items=[("START", "At the Start", "The mesh in the first frame"),
@@ -69,24 +72,25 @@ class MuslinScene(bpy.types.PropertyGroup):
     frame_end: IntProperty(name="End", default=250)
     use_automatic_steps: BoolProperty(
         name="Automatic Steps", default=True,
-        description="Adapt the number of steps per frame to the motion; otherwise it is fixed")
+        description=keys.sentence("time", "steps_per_frame"))
     steps_per_frame: IntProperty(
-        name="Steps per Frame", default=10, min=1, soft_max=100,
+        name="Steps per Frame", default=10, soft_max=100, **keys.limits("time", "steps_per_frame"),
         description="More steps follow fast motion better and damp less")
     air_density: FloatProperty(
-        name="Air Density", default=1.2, min=0, soft_max=10, description="kg/m³; 0 is a vacuum, without wind and drag")
+        name="Air Density", default=keys.default("force", "air_density"), soft_max=10,
+        **keys.limits("force", "air_density"),
+        description=f"{keys.sentence('force', 'air_density')}; 0 is a vacuum, without wind and drag")
     use_contact: BoolProperty(
         name="Contact", default=True,
         description="Contact of cloth with itself, other cloth and colliders, without crossings")
     effort: EnumProperty(
-        name="Effort", default="NORMAL",
+        name="Effort", default=keys.default("solver", "effort").upper(),
         description="How accurately steps are solved; surfaces do not cross at any effort",
-        items=[("DRAFT", "Draft", "To see whether a scene works"),
-               ("NORMAL", "Normal", "For pictures"),
-               ("EXACT", "Exact", "For measurements: slower by far")])
+        items=[(word.upper(), word.capitalize(), keys.meaning("solver", "effort", word))
+               for word in keys.key("solver", "effort")["enum"]])
     friction: FloatProperty(
-        name="Friction", default=0.3, min=0, max=100, soft_max=1,
-        description="Coulomb's coefficient of cloth and colliders without Own Friction")
+        name="Friction", default=keys.default("contact", "friction"), soft_max=1,
+        **keys.limits("contact", "friction"), description=keys.sentence("contact", "friction"))
     keep_states: BoolProperty(
         name="Keep States", default=True,
         description="Keep the state of every frame, to continue a bake from any of them: 96 bytes per vertex and frame")

@@ -6,6 +6,8 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
+from . import keys
+
 Vec = Tuple[float, float, float]
 
 
@@ -35,9 +37,9 @@ class Collider:
 @dataclass
 class Wind:
     velocities: List[Vec]  # one, or one a frame [m/s]
-    gust: float = 0.0  # root mean square [m/s]
-    gust_length: float = 1.0  # [m]
-    seed: int = 1
+    gust: float = keys.default("force", "gust")  # root mean square [m/s]
+    gust_length: float = keys.default("force", "gust_length")  # [m]
+    seed: int = keys.default("force", "seed")
 
 
 @dataclass
@@ -47,13 +49,13 @@ class SceneInput:
     frame_rate: float
     steps_per_frame: Optional[int]  # None: automatic
     gravity: Vec = (0.0, 0.0, 0.0)  # [m/s²]
-    air_density: float = 1.2  # [kg/m³]; 0: no air
+    air_density: float = keys.default("force", "air_density")  # [kg/m³]; 0: no air
     wind: Optional[Wind] = None
     cloths: List[Cloth] = field(default_factory=list)
     colliders: List[Collider] = field(default_factory=list)
     contact: bool = True  # of cloth with itself, with other cloth and with colliders
-    effort: str = "normal"  # or "draft" or "exact"
-    friction: float = 0.3  # of what has none of its own
+    effort: str = keys.default("solver", "effort")
+    friction: float = keys.default("contact", "friction")  # of what has none of its own
 
 
 def body_names(names):
@@ -119,7 +121,7 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
 def _body(cloth):
     lines = [f"name = {quoted(cloth.name)}", f"mesh = {quoted(cloth.name + '.obj')}", f'model = "{cloth.model}"']
     lines.append(f"material = {quoted(cloth.material)}")
-    if cloth.model == "lattice":
+    if cloth.voxel_width > 0:
         lines.append(f"voxel_width = {number(cloth.voxel_width)}")
     if cloth.thickness > 0:
         lines.append(f"thickness = {number(cloth.thickness)}")

@@ -4,19 +4,62 @@ import json
 import os
 import pathlib
 import signal
+import subprocess
+import sys
 import tempfile
 import time
 import tomllib
+import types
 import unittest
+import unittest.mock
 
 import numpy as np
 
 from support import load
 
 axes, point_cache, scene_text = load("axes"), load("point_cache"), load("scene_text")
-advice, worker, fabrics = load("advice"), load("worker"), load("fabrics")
+advice, worker, fabrics, keys = load("advice"), load("worker"), load("fabrics"), load("keys")
 
 PROGRAM = os.environ.get("MUSLIN_PROGRAM", str(pathlib.Path(__file__).parents[2] / "build" / "release" / "muslin"))
+
+
+class Keys(unittest.TestCase):
+    def test_the_add_on_has_the_declarations_of_the_program(self):
+        printed = subprocess.run([PROGRAM, "schema"], check=True, capture_output=True, text=True).stdout
+        shipped = (pathlib.Path(__file__).parents[1] / "muslin_cloth" / "scene_schema.json").read_text()
+        self.assertTrue(shipped == printed, "write it anew: tools/write_schema build/release/muslin")
+
+    def test_a_panel_gets_ranges_defaults_and_sentences(self):
+        self.assertEqual(keys.limits("contact", "friction"), {"min": 0, "max": 100})
+        self.assertEqual(keys.limits("time", "steps_per_frame"), {"min": 1, "max": 1000000})
+        self.assertEqual(keys.default("contact", "friction"), 0.3)
+        self.assertEqual(keys.sentence("body", "thickness", model="shell"), "Thickness in contact [m]")
+        self.assertEqual(keys.sentence("force", "air_density"), "Density of the air [kg/m³]")
+        self.assertEqual(keys.meaning("body", "model", "shell"), "The mesh itself as thin cloth")
+        self.assertEqual(keys.meaning("solver", "effort", "draft"), "To see whether a scene works")
+        with self.assertRaises(KeyError):
+            keys.default("contact", "frictoin")
+
+    def test_properties_of_the_panel_are_within_their_ranges(self):
+        made = []
+
+        def prop(**settings):
+            made.append(settings)
+
+        kinds = ("Bool", "Enum", "Float", "Int", "Pointer", "String")
+        bpy = types.ModuleType("bpy")
+        bpy.types = types.SimpleNamespace(PropertyGroup=object)
+        bpy.props = types.ModuleType("bpy.props")
+        for kind in kinds:
+            setattr(bpy.props, f"{kind}Property", prop)
+        with unittest.mock.patch.dict(sys.modules, {"bpy": bpy, "bpy.props": bpy.props}):
+            load("properties")
+        self.assertGreater(len(made), 20)
+        for settings in made:
+            if "min" in settings and "default" in settings:
+                self.assertLessEqual(settings["min"], settings["default"], settings)
+            if "max" in settings:
+                self.assertLessEqual(settings["default"], settings["max"], settings)
 
 
 class Scratch(unittest.TestCase):
