@@ -193,7 +193,7 @@ int frame_of(const RunReader& run, int frame) {
 
 int lattice_body(const RunReader& run, const std::optional<std::string>& body) {
   const int index = Bodies(run, body).index();
-  if (!run.has_lattice(index)) throw Error(ErrorKind::usage, "the body has no lattice", "take its skin");
+  if (!run.has_cells(index)) throw Error(ErrorKind::usage, "the body has no lattice", "take its skin");
   return index;
 }
 
@@ -289,7 +289,7 @@ void bind_run(nb::module_& m) {
           "body"_a = nb::none(), "Of a body in pictures: red, green, blue from 0 to 1 (sRGB), shape (3,).")
       .def(
           "has_lattice",
-          [](const RunReader& run, const Name& body) { return run.has_lattice(Bodies(run, body).index()); },
+          [](const RunReader& run, const Name& body) { return run.has_cells(Bodies(run, body).index()); },
           "body"_a = nb::none(), "Shells and colliders have none, and no contour.")
       .def(
           "is_collider",
@@ -321,25 +321,25 @@ void bind_run(nb::module_& m) {
       .def(
           "lattice_rest_positions",
           [](nb::pointer_and_handle<RunReader> run, const Name& body) {
-            return view(run.p->lattice(lattice_body(*run.p, body)).rest_positions, run.h);
+            return view(run.p->cells(lattice_body(*run.p, body)).rest_positions, run.h);
           },
           "body"_a = nb::none(), "(V, 3) [m]")
       .def(
           "lattice_voxels",
           [](nb::pointer_and_handle<RunReader> run, const Name& body) {
-            return view(run.p->lattice(lattice_body(*run.p, body)).voxels, run.h);
+            return view(run.p->cells(lattice_body(*run.p, body)).voxels, run.h);
           },
           "body"_a = nb::none(), "(C, 8) corners of each voxel.")
       .def(
           "lattice_points",
           [](const RunReader& run, int frame, const Name& body) {
-            return taken(run.lattice_points(lattice_body(run, body), frame_of(run, frame)));
+            return taken(run.selectable_points(lattice_body(run, body), frame_of(run, frame)));
           },
           "frame"_a, "body"_a = nb::none(), "The lattice's vertices at a frame, (V, 3) [m].")
       .def(
           "lattice_velocities",
           [](const RunReader& run, int frame, const Name& body) {
-            return taken(run.lattice_velocities(lattice_body(run, body), frame_of(run, frame)));
+            return taken(run.selectable_velocities(lattice_body(run, body), frame_of(run, frame)));
           },
           "frame"_a, "body"_a = nb::none(), "By central differences, (V, 3) [m/s].")
       .def_prop_ro(

@@ -1,4 +1,5 @@
 // Simulations: stepped, looked at, changed, saved.
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -44,14 +45,18 @@ PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse)},
 Array<double, -1, 3> carried(const Self& self, const std::optional<std::string>& name,
                              const std::string& surface, const std::vector<Vec3>& vectors) {
   const Component& body = find_body(*self.model(), name);
-  const bool contour = choice(surface, {"skin", "contour"}, "surface") == 1;
-  const LatticeBody* lattice = as_lattice(body);
-  if (contour && !lattice)
-    throw Error(ErrorKind::usage, "the body \"" + body.name + "\" is no lattice and has no contour",
-                "take its skin");
-  const Embedding& embedding = contour ? lattice->contour.embedding : body.skin;
-  std::vector<Vec3> points(embedding.size());
-  embedding.apply(self.model()->of(body, vectors), points);
+  const Embedding* embedding = &body.skin;
+  if (choice(surface, {"skin", "contour"}, "surface") == 1) {
+    const std::vector<CachedPoints> cached = body.cached_points();
+    const auto contour = std::find_if(cached.begin(), cached.end(),
+                                      [](const CachedPoints& each) { return each.name == "contour"; });
+    if (contour == cached.end())
+      throw Error(ErrorKind::usage, "the body \"" + body.name + "\" is no lattice and has no contour",
+                  "take its skin");
+    embedding = contour->embedding;
+  }
+  std::vector<Vec3> points(embedding->size());
+  embedding->apply(self.model()->of(body, vectors), points);
   return taken(std::move(points));
 }
 

@@ -85,8 +85,8 @@ TEST(ShellRun, IsExportedAndBuilt) {
   EXPECT_EQ(stats["bodies"][1]["triangles"], 96);
 
   const RunReader reader(scratch / "run");
-  EXPECT_TRUE(reader.has_lattice(0));
-  EXPECT_FALSE(reader.has_lattice(1));
+  EXPECT_TRUE(reader.has_cells(0));
+  EXPECT_FALSE(reader.has_cells(1));
   const auto points = reader.points(1, SurfaceKind::skin, 2);
   EXPECT_EQ(points[0], Vec3f::Zero());
   EXPECT_LT(points[62].y(), -0.001F);

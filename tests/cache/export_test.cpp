@@ -257,11 +257,11 @@ TEST_F(Export, VtuSeriesShowsTheLattice) {
     EXPECT_GT(number_at<float>(stretch, 4 * i), 0.99f);
     EXPECT_LT(number_at<float>(stretch, 4 * i), 1.5f);
   }
-  EXPECT_EQ(number_at<float>(displacement, 4), run->lattice_points(0, 3)[0].y());
+  EXPECT_EQ(number_at<float>(displacement, 4), run->selectable_points(0, 3)[0].y());
   EXPECT_EQ(block("velocity").size(), displacement.size());
   // VTK's order of a hexahedron: around the bottom, then around the top.
   const std::string corners = block("connectivity");
-  const auto& voxel = run->lattice(0).voxels[0];
+  const auto& voxel = run->cells(0).voxels[0];
   EXPECT_EQ(number_at<std::int64_t>(corners, 16), voxel[3]);
   EXPECT_EQ(number_at<std::int64_t>(corners, 24), voxel[2]);
 }

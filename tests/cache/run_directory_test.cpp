@@ -189,6 +189,40 @@ TEST(RunDirectory, HasTheDocumentedFiles) {
   EXPECT_EQ(run["scene"]["title"], "a small flag");
 }
 
+/// The first runs listed no files, later ones did not say that the vertices of a lattice are cached.
+TEST(RunDirectory, OfEarlierVersionsIsReadAndReplaced) {
+  Scratch scratch;
+  const fs::path directory = scratch / "run";
+  run_to(directory, 1, false);
+  auto summary = nlohmann::json::parse(bytes_of(directory / "run.json"));
+  EXPECT_EQ(summary["bodies"][0]["vertices"], "lattice");
+  const auto expect_read = [&] {
+    write_atomically(directory / "run.json", summary.dump());
+    const RunReader run(directory);
+    EXPECT_TRUE(run.has(0, SurfaceKind::contour));
+    EXPECT_EQ(run.cells(0).rest_positions, model()->rest_positions);
+    EXPECT_EQ(run.selectable_count(0), model()->vertex_count());
+  };
+  summary["bodies"][0].erase("vertices");
+  expect_read();
+  summary["bodies"] = {{{"name", "flag"}}};
+  expect_read();
+  remove_run_files(directory);
+  for (const char* file : {"flag.skin.pc2", "flag.contour.obj", "flag.lattice.vtu", "flag.lattice.pc2"})
+    EXPECT_FALSE(fs::exists(directory / file)) << file;
+}
+
+TEST(RunDirectory, FilesOutsideOfTheRunAreNotThoseOfABody) {
+  const auto entry = nlohmann::ordered_json::parse(R"({"name": "flag", "model": "x",
+      "a": {"mesh": "../flag.a.obj", "cache": "flag.a.pc2"}, "b": {"mesh": "flag.b.obj", "cache": "sail.b.pc2"},
+      "c": {"mesh": "flag.c.obj", "cache": "flag.c.pc2"}, "d": 3, "vertices": "c"})");
+  const BodyFiles files = listed_files(entry);
+  ASSERT_EQ(files.points.size(), 2u);
+  EXPECT_EQ(files.points[0].cache, "flag.skin.pc2");
+  EXPECT_EQ(files.points[1].mesh, "flag.c.obj");
+  EXPECT_EQ(files.vertices, "c");
+}
+
 TEST(RunDirectory, IsReadBack) {
   Scratch scratch;
   run_to(scratch / "run", 5, false);
@@ -198,8 +232,8 @@ TEST(RunDirectory, IsReadBack) {
   EXPECT_EQ(run.frame_rate(), 24);
   EXPECT_EQ(run.find_body(""), 0);
   EXPECT_EQ(run.mesh(0, SurfaceKind::skin).face_vertices, model()->bodies[0].mesh.face_vertices);
-  EXPECT_EQ(run.lattice(0).voxels, as_lattice(model()->bodies[0])->lattice.voxel_vertices);
-  EXPECT_EQ(run.lattice(0).rest_positions, model()->rest_positions);
+  EXPECT_EQ(run.cells(0).voxels, as_lattice(model()->bodies[0])->lattice.voxel_vertices);
+  EXPECT_EQ(run.cells(0).rest_positions, model()->rest_positions);
   Simulation simulation(model());
   for (int frame = 0; frame < 5; ++frame) simulation.advance();
   std::vector<Vec3> skin(8);
@@ -393,8 +427,8 @@ TEST(RunDirectory, RecordsOtherChangesOnResume) {
 
 TEST(RunDirectory, NamesThatCannotBeFileNamesAreRefused) {
   for (const char* name : {"", "../flag", "a/b", ".hidden", "two\nlines"})
-    expect_error(ErrorKind::input, "cannot name files", [&] { body_files(name); });
-  EXPECT_EQ(body_files("Fahne 2").skin_cache, "Fahne 2.skin.pc2");
+    expect_error(ErrorKind::input, "cannot name files", [&] { skin_files(name); });
+  EXPECT_EQ(skin_files("Fahne 2").cache, "Fahne 2.skin.pc2");
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(Selections, AreReadBackAsInTheModel) {
   EXPECT_EQ(force.name, "tug");
   EXPECT_EQ(force.force, 1);
   ASSERT_EQ(force.vertices.size(), 1u);
-  EXPECT_EQ(run.lattice(0).rest_positions[static_cast<std::size_t>(force.vertices[0])], Vec3(3, 0, 0));
+  EXPECT_EQ(run.cells(0).rest_positions[static_cast<std::size_t>(force.vertices[0])], Vec3(3, 0, 0));
 }
 
 TEST(Selections, OfPinsWithoutEndAreReadBack) {

@@ -258,7 +258,7 @@ TEST(NewKind, IsCachedExportedAndDrawn) {
   EXPECT_EQ(reader.bodies(), (std::vector<std::string>{"ball", "net"}));
   const int net = reader.find_body("net");
   EXPECT_EQ(reader.find_body(""), net) << "the only one that is no collider";
-  EXPECT_FALSE(reader.has_lattice(net));
+  EXPECT_FALSE(reader.has_cells(net));
   EXPECT_EQ(reader.points(net, SurfaceKind::skin, 2).size(), 289u);
   EXPECT_EQ(reader.points(net, SurfaceKind::skin, 2)[2], knots.read(2)[1]);
 

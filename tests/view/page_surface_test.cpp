@@ -10,8 +10,8 @@
 namespace muslin {
 namespace {
 
-RunReader::LatticeShape shape_of(const Lattice& lattice) {
-  RunReader::LatticeShape shape;
+RunReader::Cells shape_of(const Lattice& lattice) {
+  RunReader::Cells shape;
   shape.rest_positions = test::rest_positions(lattice);
   shape.voxels = lattice.voxel_vertices;
   return shape;
@@ -26,16 +26,16 @@ double volume(const Mesh& mesh) {
   return six / 6;
 }
 
-TEST(LatticeOutside, IsTheClosedSkinOfTheVoxelsTurnedOutwards) {
-  const LatticeOutside outside = outside_of(shape_of(test::box_lattice({3, 2, 4})));
+TEST(CellsOutside, IsTheClosedSkinOfTheVoxelsTurnedOutwards) {
+  const CellsOutside outside = outside_of(shape_of(test::box_lattice({3, 2, 4})));
   EXPECT_EQ(outside.mesh.face_count(), 2u * (3 * 2 + 2 * 4 + 3 * 4));
   EXPECT_EQ(outside.vertices.size(), 4u * 3 * 5 - 2 * 1 * 3);  // all but those inside
   EXPECT_NEAR(volume(outside.mesh), 24, 1e-12);
 }
 
-TEST(LatticeOutside, KeepsEveryVertexOfASheet) {
+TEST(CellsOutside, KeepsEveryVertexOfASheet) {
   const Lattice lattice = test::box_lattice({5, 4, 1});
-  const LatticeOutside outside = outside_of(shape_of(lattice));
+  const CellsOutside outside = outside_of(shape_of(lattice));
   ASSERT_EQ(outside.vertices.size(), lattice.vertices.size());
   for (std::size_t v = 0; v < outside.vertices.size(); ++v)
     EXPECT_EQ(outside.vertices[v], static_cast<int>(v));

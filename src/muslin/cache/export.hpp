@@ -20,7 +20,7 @@ struct ExportOptions {
 ///   .obj .ply    one mesh per frame, NAME.0000.obj, …
 ///   .glb .gltf   a mesh with a morph target per frame and an animation of their weights
 ///   .usda        meshes with time samples of points, velocities and extents
-///   .vtu         the lattice's voxels per frame with displacement, velocity, stretch, and NAME.pvd
+///   .vtu         its voxels or triangles per frame with displacement, velocity, stretch, and NAME.pvd
 /// Each file appears when it is complete. Errors: usage, for another suffix or an unknown body; file.
 MUSLIN_API void export_run(const RunReader& run, const std::filesystem::path& file,
                            const ExportOptions& options = {}, const Progress& progress = {});

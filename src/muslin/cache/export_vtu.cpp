@@ -50,7 +50,7 @@ float principal_stretch(const Vec3i& triangle, const std::vector<Vec3f>& rest,
   return static_cast<float>(std::sqrt(std::max(0.0, squares.eigenvalues()[1])));
 }
 
-/// The cells of a body's grid: voxels of a lattice or triangles of a shell.
+/// The cells of a body's grid: its voxels, or else the triangles of its skin.
 struct Cells {
   VtkGrid grid;
   std::function<std::vector<Vec3f>(int)> points, velocities;  ///< at a frame
@@ -60,7 +60,7 @@ struct Cells {
 
 Cells cells_of(const RunReader& run, int body) {
   Cells cells;
-  if (!run.has_lattice(body)) {
+  if (!run.has_cells(body)) {
     const auto triangles = std::make_shared<Triangulation>(triangulate(run.mesh(body, SurfaceKind::skin)));
     for (const Vec3i& t : triangles->triangles) {
       const std::array<std::int64_t, 3> corners = {t[0], t[1], t[2]};
@@ -75,10 +75,10 @@ Cells cells_of(const RunReader& run, int body) {
     };
     return cells;
   }
-  const RunReader::LatticeShape& shape = run.lattice(body);
+  const RunReader::Cells& shape = run.cells(body);
   for (const auto& voxel : shape.voxels) cells.grid.add_voxel(voxel);
-  cells.points = [&run, body](int frame) { return run.lattice_points(body, frame); };
-  cells.velocities = [&run, body](int frame) { return run.lattice_velocities(body, frame); };
+  cells.points = [&run, body](int frame) { return run.selectable_points(body, frame); };
+  cells.velocities = [&run, body](int frame) { return run.selectable_velocities(body, frame); };
   cells.rest = shape.rest_positions;
   cells.stretch = [&shape](std::size_t cell, const std::vector<Vec3f>& points) {
     return principal_stretch(shape.voxels[cell], shape.rest_positions, points);

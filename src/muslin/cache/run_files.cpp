@@ -13,14 +13,41 @@ namespace muslin {
 
 namespace fs = std::filesystem;
 
-BodyFiles body_files(const std::string& body) {
+PointsFiles points_files(const std::string& body, const std::string& name, const std::string& extension) {
   if (body.empty() || body.front() == '.' || body.find_first_of("/\\\n\r\t\"") != std::string::npos ||
       body.size() > 200) {
     throw Error(ErrorKind::input, "the body \"" + body + "\" cannot name files",
                 "give it a name of letters, digits, dashes");
   }
-  return {body + ".skin.obj",    body + ".skin.pc2",    body + ".contour.obj",
-          body + ".contour.pc2", body + ".lattice.vtu", body + ".lattice.pc2"};
+  return {name, fmt::format("{}.{}.{}", body, name, extension), fmt::format("{}.{}.pc2", body, name)};
+}
+
+BodyFiles listed_files(const nlohmann::ordered_json& body) {
+  const std::string name = body.value("name", "");
+  BodyFiles files{{skin_files(name)}, ""};
+  // The first runs had lattices only, and did not list their files.
+  if (!body.contains("model"))
+    files.points.insert(files.points.end(),
+                        {points_files(name, "contour", "obj"), points_files(name, "lattice", "vtu")});
+  const auto file_in = [&](const nlohmann::ordered_json& entry, const char* key) -> std::string {
+    const auto at = entry.find(key);
+    const std::string file = at != entry.end() && at->is_string() ? at->get<std::string>() : "";
+    const bool is_own = file.starts_with(name + ".") && file.find_first_of("/\\") == std::string::npos;
+    return is_own ? file : "";
+  };
+  for (const auto& [points, entry] : body.items()) {
+    const auto is_known = [&](const PointsFiles& each) { return each.name == points; };
+    if (!entry.is_object() || std::any_of(files.points.begin(), files.points.end(), is_known)) continue;
+    const PointsFiles listed = {points, file_in(entry, "mesh"), file_in(entry, "cache")};
+    if (!listed.mesh.empty() && !listed.cache.empty()) files.points.push_back(listed);
+  }
+  const auto vertices = body.find("vertices");
+  if (vertices != body.end() && vertices->is_string()) files.vertices = *vertices;
+  // Earlier runs did not say that the vertices of a lattice are cached.
+  const auto is_lattice = [](const PointsFiles& each) { return each.name == "lattice"; };
+  if (files.vertices.empty() && std::any_of(files.points.begin(), files.points.end(), is_lattice))
+    files.vertices = "lattice";
+  return files;
 }
 
 std::string checkpoint_name(int frame, int steps) {
@@ -74,30 +101,6 @@ const std::vector<std::string>& own_names() {
   return names;
 }
 
-std::vector<std::string> names_of(const std::string& body) {
-  const BodyFiles files = body_files(body);
-  return {files.skin_mesh,     files.skin_cache,   files.contour_mesh,
-          files.contour_cache, files.lattice_mesh, files.lattice_cache};
-}
-
-/// Returns the names that run.json lists for a body, of files beside it that begin with its name.
-std::vector<std::string> listed_names(const nlohmann::json& body) {
-  const std::string name = body.value("name", "");
-  std::vector<std::string> names = names_of(name);
-  for (const nlohmann::json& entry : body) {
-    for (const char* key : {"mesh", "cache"}) {
-      const auto at = entry.is_object() ? entry.find(key) : entry.end();
-      if (at == entry.end() || !at->is_string()) continue;
-      const std::string file = at->get<std::string>();
-      if (file.starts_with(name + ".") && file.find_first_of("/\\") == std::string::npos)
-        names.push_back(file);
-    }
-  }
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
-}
-
 void remove_file(const fs::path& path) {
   std::error_code code;
   fs::remove(path, code);
@@ -109,10 +112,9 @@ void remove_file(const fs::path& path) {
 
 }  // namespace
 
-void remove_unfinished_files(const fs::path& directory, const std::vector<std::string>& bodies) {
+void remove_unfinished_files(const fs::path& directory, const std::vector<std::string>& files) {
   std::vector<std::string> owned = own_names();
-  for (const std::string& body : bodies)
-    for (const std::string& name : names_of(body)) owned.push_back(name);
+  owned.insert(owned.end(), files.begin(), files.end());
   std::vector<fs::path> doomed;
   std::error_code code;
   for (const auto& entry : fs::directory_iterator(directory / "checkpoint", code))
@@ -128,9 +130,10 @@ void remove_unfinished_files(const fs::path& directory, const std::vector<std::s
 
 void remove_run_files(const fs::path& directory) {
   std::vector<fs::path> doomed;
-  const auto json = nlohmann::json::parse(read_file(directory / "run.json"), nullptr, false);
-  for (const auto& body : json.value("bodies", nlohmann::json::array()))
-    for (const std::string& name : listed_names(body)) doomed.push_back(directory / name);
+  const auto json = nlohmann::ordered_json::parse(read_file(directory / "run.json"), nullptr, false);
+  for (const auto& body : json.value("bodies", nlohmann::ordered_json::array()))
+    for (const PointsFiles& points : listed_files(body).points)
+      doomed.insert(doomed.end(), {directory / points.mesh, directory / points.cache});
   for (const CheckpointFile& file : list_checkpoints(directory)) doomed.push_back(file.path);
   // run.json is removed last: until then the directory is recognised as a run and can be cleaned again.
   for (const std::string& name : own_names()) doomed.push_back(directory / name);

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A surface or lattice over time.
+/// Points over time.
 struct Track {
   Pc2Reader cache;
   std::vector<Vec3f> at(int frame) const { return cache.read(frame); }
@@ -42,13 +42,13 @@ struct Track {
 
 struct BodyTracks {
   Track skin;
+  Mesh skin_mesh;
   bool collider = false, plane = false;
-  std::optional<Track> contour, lattice;  // of lattices only
-  std::optional<Track> vertices;          // of other components that cache their vertices
-  Mesh skin_mesh, contour_mesh;
-  RunReader::LatticeShape shape;
+  std::optional<Track> contour, vertices;  ///< where the component caches them
+  Mesh contour_mesh;
+  RunReader::Cells cells;  ///< of the vertices
 
-  const Track& selectable() const { return vertices ? *vertices : lattice ? *lattice : skin; }
+  const Track& selectable() const { return vertices ? *vertices : skin; }
 };
 
 bool is_text(const Json& object, const char* key) { return object.contains(key) && object[key].is_string(); }
@@ -60,9 +60,6 @@ bool describes_run(const Json& run) {
          std::all_of(run["bodies"].begin(), run["bodies"].end(),
                      [](const Json& body) { return body.is_object() && is_text(body, "name"); });
 }
-
-/// True if the run caches a lattice of the body; the first runs had nothing else, and do not say so.
-bool has_lattice_cache(const Json& body) { return body.contains("lattice") || !body.contains("model"); }
 
 }  // namespace
 
@@ -85,13 +82,6 @@ struct RunReader::Impl {
                   "the run has no body of index " + std::to_string(index),
                   "it has " + std::to_string(bodies.size()) + ", counted from 0");
     return bodies[static_cast<std::size_t>(index)];
-  }
-  const Track& lattice(int index) const {
-    if (!body(index).lattice)
-      throw Error(ErrorKind::usage, {directory.string()},
-                  "the body \"" + names[static_cast<std::size_t>(index)] + "\" has no lattice",
-                  "take its skin");
-    return *body(index).lattice;
   }
   void require_frame(int frame) const {
     if (frame < 0 || frame >= frames)
@@ -130,17 +120,16 @@ RunReader::RunReader(fs::path directory) : impl_(std::make_unique<Impl>()) {
   std::size_t frames = impl.diagnostics.size();
   for (const Json& body : impl.run["bodies"]) {
     impl.names.push_back(body["name"]);
-    const BodyFiles files = body_files(impl.names.back());
-    const auto track = [&](const std::string& name) { return Track{Pc2Reader(impl.directory / name)}; };
-    BodyTracks tracks{track(files.skin_cache),
-                      body.contains("shape"),
-                      body.value("shape", Json()) == "plane",
-                      {},
-                      {},
-                      {},
-                      read_mesh(impl.directory / files.skin_mesh).mesh,
-                      {},
-                      {}};
+    const BodyFiles files = listed_files(body);
+    const PointsFiles& skin = files.points.front();
+    BodyTracks tracks{.skin = {Pc2Reader(impl.directory / skin.cache)},
+                      .skin_mesh = read_mesh(impl.directory / skin.mesh).mesh,
+                      .collider = body.contains("shape"),
+                      .plane = body.value("shape", Json()) == "plane",
+                      .contour = {},
+                      .vertices = {},
+                      .contour_mesh = {},
+                      .cells = {}};
     const auto fit = [&](const Track& points, std::size_t count, const std::string& file) {
       if (points.cache.points() != count) {
         throw Error(ErrorKind::input, {(impl.directory / file).string()},
@@ -148,21 +137,23 @@ RunReader::RunReader(fs::path directory) : impl_(std::make_unique<Impl>()) {
       }
       frames = std::min(frames, static_cast<std::size_t>(points.cache.samples()));
     };
-    fit(tracks.skin, tracks.skin_mesh.vertex_count(), files.skin_cache);
-    if (has_lattice_cache(body)) {
-      VtkVoxels voxels = read_voxels(impl.directory / files.lattice_mesh);
-      tracks.shape = {std::move(voxels.points), std::move(voxels.voxels)};
-      tracks.contour = track(files.contour_cache);
-      tracks.lattice = track(files.lattice_cache);
-      // A body much smaller than a voxel has no contour.
-      if (tracks.contour->cache.points() > 0)
-        tracks.contour_mesh = read_mesh(impl.directory / files.contour_mesh).mesh;
-      fit(*tracks.contour, tracks.contour_mesh.vertex_count(), files.contour_cache);
-      fit(*tracks.lattice, tracks.shape.rest_positions.size(), files.lattice_cache);
+    fit(tracks.skin, tracks.skin_mesh.vertex_count(), skin.cache);
+    for (const PointsFiles& points : files.points) {
+      const auto track = [&] { return Track{Pc2Reader(impl.directory / points.cache)}; };
+      if (points.name == name_of(SurfaceKind::contour)) {
+        tracks.contour = track();
+        // A body much smaller than a voxel has no contour.
+        if (tracks.contour->cache.points() > 0)
+          tracks.contour_mesh = read_mesh(impl.directory / points.mesh).mesh;
+        fit(*tracks.contour, tracks.contour_mesh.vertex_count(), points.cache);
+      } else if (points.name == files.vertices) {
+        tracks.vertices = track();
+        if (!points.mesh.ends_with(".vtu")) continue;
+        VtkVoxels voxels = read_voxels(impl.directory / points.mesh);
+        tracks.cells = {std::move(voxels.points), std::move(voxels.voxels)};
+        fit(*tracks.vertices, tracks.cells.rest_positions.size(), points.cache);
+      }
     }
-    if (is_text(body, "vertices"))
-      tracks.vertices =
-          track(fmt::format("{}.{}.pc2", impl.names.back(), body["vertices"].get<std::string>()));
     impl.bodies.push_back(std::move(tracks));
   }
   std::vector<std::size_t> points;
@@ -229,7 +220,9 @@ int RunReader::find_body(const std::string& name) const {
 
 bool RunReader::is_collider(int body) const { return impl_->body(body).collider; }
 bool RunReader::is_plane(int body) const { return impl_->body(body).plane; }
-bool RunReader::has_lattice(int body) const { return impl_->body(body).lattice.has_value(); }
+bool RunReader::has(int body, SurfaceKind surface) const {
+  return surface == SurfaceKind::skin || impl_->body(body).contour.has_value();
+}
 const Mesh& RunReader::mesh(int body, SurfaceKind surface) const {
   impl_->require(body, surface);
   return surface == SurfaceKind::skin ? impl_->body(body).skin_mesh : impl_->body(body).contour_mesh;
@@ -249,14 +242,11 @@ std::vector<Vec3f> RunReader::selectable_points(int body, int frame) const {
   impl_->require_frame(frame);
   return impl_->body(body).selectable().at(frame);
 }
-const RunReader::LatticeShape& RunReader::lattice(int body) const { return impl_->body(body).shape; }
-std::vector<Vec3f> RunReader::lattice_points(int body, int frame) const {
+std::vector<Vec3f> RunReader::selectable_velocities(int body, int frame) const {
   impl_->require_frame(frame);
-  return impl_->lattice(body).at(frame);
+  return impl_->body(body).selectable().velocities(frame, impl_->frames, impl_->frame_rate);
 }
-std::vector<Vec3f> RunReader::lattice_velocities(int body, int frame) const {
-  impl_->require_frame(frame);
-  return impl_->lattice(body).velocities(frame, impl_->frames, impl_->frame_rate);
-}
+bool RunReader::has_cells(int body) const { return !impl_->body(body).cells.voxels.empty(); }
+const RunReader::Cells& RunReader::cells(int body) const { return impl_->body(body).cells; }
 
 }  // namespace muslin

@@ -53,11 +53,11 @@ class MUSLIN_API RunReader {
   bool is_collider(int body) const;
   /// True for an unbounded collider, of which a patch is shown.
   bool is_plane(int body) const;
-  /// Shells and colliders have a skin, and neither contour nor lattice.
-  bool has_lattice(int body) const;
+  /// True if the run has this surface of the body. Every body has a skin.
+  bool has(int body, SurfaceKind surface) const;
 
-  /// Returns the surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of
-  /// a body without a lattice.
+  /// Returns the surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of a
+  /// body without one.
   const Mesh& mesh(int body, SurfaceKind surface) const;
   /// Returns the vertices of that surface at a frame, in the same order [m].
   std::vector<Vec3f> points(int body, SurfaceKind surface, int frame) const;
@@ -65,20 +65,19 @@ class MUSLIN_API RunReader {
   /// [m/s].
   std::vector<Vec3f> velocities(int body, SurfaceKind surface, int frame) const;
 
-  /// The body's lattice; empty if it has none: rest positions [m], and voxels with their corners in the order
-  /// of Lattice.
-  struct LatticeShape {
-    std::vector<Vec3> rest_positions;
-    std::vector<std::array<int, 8>> voxels;
-  };
-  const LatticeShape& lattice(int body) const;
-  std::vector<Vec3f> lattice_points(int body, int frame) const;
-  std::vector<Vec3f> lattice_velocities(int body, int frame) const;
-
   /// The points that selections refer to: the vertices of the body if they are cached, those of its skin
   /// otherwise.
   std::size_t selectable_count(int body) const;
   std::vector<Vec3f> selectable_points(int body, int frame) const;
+  std::vector<Vec3f> selectable_velocities(int body, int frame) const;
+
+  /// Voxels between the vertices of a body: rest positions [m], and corners in the order of Lattice.
+  struct Cells {
+    std::vector<Vec3> rest_positions;
+    std::vector<std::array<int, 8>> voxels;
+  };
+  bool has_cells(int body) const;
+  const Cells& cells(int body) const;  ///< empty if it has none
 
   /// Returns the vertices of the pins and point forces since the run was last started or resumed.
   const Selections& selections() const;

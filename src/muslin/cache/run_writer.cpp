@@ -79,13 +79,19 @@ Json read_summary(const fs::path& directory) {
   return run;
 }
 
-/// The files of cached points of a component.
-struct PointsFiles {
-  std::string mesh, cache;
-};
-PointsFiles points_files(const std::string& body, const CachedPoints& points) {
-  return {fmt::format("{}.{}.{}", body, points.name, points.extension),
-          fmt::format("{}.{}.pc2", body, points.name)};
+PointsFiles files_of(const Component& body, const CachedPoints& points) {
+  return points_files(body.name, points.name, points.extension);
+}
+
+/// Returns the names of all files of the component. Errors: input, if its name cannot be part of one.
+std::vector<std::string> files_of(const Component& body) {
+  const PointsFiles skin = skin_files(body.name);
+  std::vector<std::string> files = {skin.mesh, skin.cache};
+  for (const CachedPoints& points : body.cached_points()) {
+    const PointsFiles own = files_of(body, points);
+    files.insert(files.end(), {own.mesh, own.cache});
+  }
+  return files;
 }
 
 bool has_stretch_limit(const Model& model) {
@@ -201,9 +207,9 @@ void RunWriter::Impl::start() {
   write_atomically(directory / "stats.json", statistics_json(model));
   write_atomically(directory / "selections.json", selections_json(model));
   for (const Component& body : model.bodies) {
-    write_mesh(directory / body_files(body.name).skin_mesh, body.mesh);
+    write_mesh(directory / skin_files(body.name).mesh, body.mesh);
     for (const CachedPoints& points : body.cached_points())
-      points.write_rest(directory / points_files(body.name, points).mesh);
+      points.write_rest(directory / files_of(body, points).mesh);
   }
   open_files(0);
   append_points();
@@ -219,11 +225,11 @@ void RunWriter::Impl::open_files(int frames) {
     const auto open = [&](const std::string& name, std::size_t points) {
       return Pc2Writer(directory / name, points, mode, frames);
     };
-    caches.push_back({open(body_files(body.name).skin_cache, body.mesh.vertex_count()), {}});
+    caches.push_back({open(skin_files(body.name).cache, body.mesh.vertex_count()), {}});
     for (const CachedPoints& points : body.cached_points()) {
       const std::size_t count =
           points.embedding ? points.embedding->size() : static_cast<std::size_t>(body.vertex_count);
-      caches.back().others.push_back(open(points_files(body.name, points).cache, count));
+      caches.back().others.push_back(open(files_of(body, points).cache, count));
     }
   }
   const auto table = [&](const char* name, std::string_view header, bool is_there) {
@@ -391,16 +397,14 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
   run["frame_rate"] = model.scene.time.frame_rate;
   run["bodies"] = Json::array();
   for (const Component& body : model.bodies) {
-    const BodyFiles files = body_files(body.name);
-    Json entry = {{"name", body.name},
-                  {"model", body.kind()},
-                  {"skin", {{"mesh", files.skin_mesh}, {"cache", files.skin_cache}}}};
+    const PointsFiles skin = skin_files(body.name);
+    Json entry = {
+        {"name", body.name}, {"model", body.kind()}, {"skin", {{"mesh", skin.mesh}, {"cache", skin.cache}}}};
     if (body.is_collider()) entry["shape"] = body.appearance().shape;
     for (const CachedPoints& points : body.cached_points()) {
-      const PointsFiles names = points_files(body.name, points);
+      const PointsFiles names = files_of(body, points);
       entry[points.name] = {{"mesh", names.mesh}, {"cache", names.cache}};
-      // Readers take the vertices of a lattice without being told.
-      if (!points.embedding && points.name != "lattice") entry["vertices"] = points.name;
+      if (!points.embedding) entry["vertices"] = points.name;
     }
     run["bodies"].push_back(entry);
   }
@@ -436,11 +440,11 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
 RunWriter::RunWriter(fs::path directory, Simulation& simulation, int total_frames, bool resume,
                      RunHistory history)
     : impl_(std::make_unique<Impl>(std::move(directory), simulation, total_frames, history)) {
-  for (const Component& body : simulation.model().bodies) body_files(body.name);  // refuses impossible names
+  std::vector<std::string> files;
+  for (const Component& body : simulation.model().bodies)
+    for (std::string& file : files_of(body)) files.push_back(std::move(file));
   impl_->claim();
-  std::vector<std::string> bodies;
-  for (const Component& body : simulation.model().bodies) bodies.push_back(body.name);
-  remove_unfinished_files(impl_->directory, bodies);
+  remove_unfinished_files(impl_->directory, files);
   impl_->resumed = resume && impl_->resume();
   if (!impl_->resumed) {
     impl_->start();

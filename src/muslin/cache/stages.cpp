@@ -8,7 +8,7 @@ namespace muslin {
 void write_stages(const std::filesystem::path& directory, const Model& model, const Progress& progress) {
   make_directory(directory);
   for (const Component& body : model.bodies) {
-    body_files(body.name);  // rejects invalid file names
+    skin_files(body.name);  // rejects invalid file names
     body.write_stages(directory, progress);
   }
   write_atomically(directory / "stats.json", statistics_json(model));

@@ -61,7 +61,7 @@ struct LoadedVertices {
 /// Points besides the skin that a run caches in NAME.POINTS.pc2, and a file with their mesh.
 struct CachedPoints {
   std::string name;       ///< such as "contour"
-  std::string extension;  ///< of the file NAME.POINTS.EXTENSION, such as "obj"
+  std::string extension;  ///< of the file NAME.POINTS.EXTENSION: "obj", a surface, or "vtu", voxels
   std::function<void(const std::filesystem::path&)> write_rest;  ///< writes that file
   /// Maps the vertices to these points; null: the points are the vertices, and selections refer to them.
   const Embedding* embedding = nullptr;

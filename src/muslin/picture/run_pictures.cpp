@@ -50,9 +50,9 @@ struct RunPictures::Parts {
     }
     return is_closed(mesh) ? solid_look(colour) : fabric_look(colour);
   }
-  /// Returns the surface to show: if all bodies are shown, the skin for those without a lattice.
+  /// Returns the surface to show: if all bodies are shown, the skin for those without the chosen one.
   SurfaceKind surface(int body) const {
-    return options.body.empty() && !run.has_lattice(body) ? SurfaceKind::skin : options.surface;
+    return options.body.empty() && !run.has(body, options.surface) ? SurfaceKind::skin : options.surface;
   }
   std::vector<Vec3> points(int body, int frame) const {
     return in_double(run.points(body, surface(body), frame));

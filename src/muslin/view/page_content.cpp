@@ -104,12 +104,14 @@ class Gatherer {
                  {"solid", closed},
                  {"surfaces", Json::object()}};
     add_surface(body, "skin", skin, add_track(PageTrack::Source::skin, b, skin.vertex_count(), nullptr));
-    if (!skins_only_ && run_.has_lattice(b)) {
+    if (!skins_only_ && run_.has(b, SurfaceKind::contour)) {
       const Mesh& contour = run_.mesh(b, SurfaceKind::contour);
       if (contour.vertex_count() > 0)
         add_surface(body, "contour", contour,
                     add_track(PageTrack::Source::contour, b, contour.vertex_count(), nullptr));
-      const LatticeOutside outside = outside_of(run_.lattice(b));
+    }
+    if (!skins_only_ && run_.has_cells(b)) {
+      const CellsOutside outside = outside_of(run_.cells(b));
       add_surface(body, "lattice", outside.mesh,
                   add_track(PageTrack::Source::selectable, b, run_.selectable_count(b), &outside.vertices));
     }

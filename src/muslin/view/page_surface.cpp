@@ -44,7 +44,7 @@ PageSurface page_surface(const Mesh& mesh) {
   return page;
 }
 
-LatticeOutside outside_of(const RunReader::LatticeShape& lattice) {
+CellsOutside outside_of(const RunReader::Cells& cells) {
   // Corner c lies at (c & 1, c >> 1 & 1, c >> 2 & 1); faces count around their outward normal.
   constexpr std::array<std::array<int, 4>, 6> faces = {
       {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
@@ -52,7 +52,7 @@ LatticeOutside outside_of(const RunReader::LatticeShape& lattice) {
     std::array<int, 4> key, corners;
   };
   std::vector<Face> all;
-  for (const auto& voxel : lattice.voxels)
+  for (const auto& voxel : cells.voxels)
     for (const auto& face : faces) {
       Face entry;
       for (std::size_t i = 0; i < 4; ++i) entry.corners[i] = voxel[static_cast<std::size_t>(face[i])];
@@ -61,9 +61,9 @@ LatticeOutside outside_of(const RunReader::LatticeShape& lattice) {
       all.push_back(entry);
     }
   std::sort(all.begin(), all.end(), [](const Face& a, const Face& b) { return a.key < b.key; });
-  LatticeOutside outside;
+  CellsOutside outside;
   outside.mesh.face_offsets = {0};
-  std::vector<int> number(lattice.rest_positions.size(), -1);
+  std::vector<int> number(cells.rest_positions.size(), -1);
   std::vector<const Face*> kept;
   for (std::size_t f = 0; f < all.size(); ++f) {
     const bool shared =
@@ -76,7 +76,7 @@ LatticeOutside outside_of(const RunReader::LatticeShape& lattice) {
     if (number[v] < 0) continue;
     number[v] = static_cast<int>(outside.vertices.size());
     outside.vertices.push_back(static_cast<int>(v));
-    outside.mesh.positions.push_back(lattice.rest_positions[v]);
+    outside.mesh.positions.push_back(cells.rest_positions[v]);
   }
   for (const Face* face : kept) {
     std::array<int, 4> corners;

@@ -23,11 +23,11 @@ struct PageSurface {
 
 PageSurface page_surface(const Mesh& mesh);
 
-/// The outside of a lattice: the voxel faces with one voxel, facing outward.
-struct LatticeOutside {
+/// The outside of voxels: their faces that belong to one alone, facing outward.
+struct CellsOutside {
   Mesh mesh;
-  std::vector<int> vertices;  ///< of the lattice, of each vertex of the mesh; ascending
+  std::vector<int> vertices;  ///< of the cells, of each vertex of the mesh; ascending
 };
-LatticeOutside outside_of(const RunReader::LatticeShape& lattice);
+CellsOutside outside_of(const RunReader::Cells& cells);
 
 }  // namespace muslin
