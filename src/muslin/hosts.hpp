@@ -6,6 +6,7 @@
 #include "muslin/cache/stages.hpp"
 #include "muslin/component/kinematic/kinematic_body.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
+#include "muslin/component/lattice/lattice_kind.hpp"
 #include "muslin/component/rigid/rigid_body.hpp"
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/contact/crossings.hpp"

@@ -14,8 +14,10 @@ set(MUSLIN_PUBLIC_HEADERS
     component/component_list.hpp
     component/component_source.hpp
     component/contact_part.hpp
+    component/lattice/lattice_body_settings.hpp
     component/scene_files.hpp
     component/selection.hpp
+    component/shell/shell_body_settings.hpp
     component/terms.hpp
     constraint/pin.hpp
     constraint/prescribed.hpp
@@ -47,6 +49,8 @@ set(MUSLIN_PUBLIC_HEADERS
     scene/pressure.hpp
     scene/scene.hpp
     scene/validate.hpp
+    scene/wind_force_settings.hpp
+    schema/own_settings.hpp
     simulation/diagnostics.hpp
     simulation/simulated_body.hpp
     simulation/simulation.hpp

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "muslin/cache/run_reader.hpp"
+#include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/input_file.hpp"
 
@@ -239,7 +240,7 @@ TEST(Run, WarnsOfAStretchLimitThatPinsOverride) {
 TEST(Run, StretchLimitMayBeAddedOnResume) {
   Scratch scratch;
   Scene weak = pulled(0.5);
-  weak.bodies[0].stretch_limit.reset();
+  weak.bodies[0].own.as<ShellBodySettings>().stretch_limit.reset();
   run_scene(weak, options(scratch / "run", 3));
   EXPECT_FALSE(std::filesystem::exists(scratch / "run/stretch.csv"));
   RunOptions resumed = options(scratch / "run", 6);

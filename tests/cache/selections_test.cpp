@@ -24,7 +24,7 @@ void begin_run(const std::filesystem::path& directory, Model model, bool resume 
 Model with_force() {
   Model model = test::small_model();
   ForceSettings force;
-  force.type = ForceSettings::Type::point;
+  force.type = "point";
   force.name = "tug";
   force.body = "flag";
   force.where.emplace().nearest = {Vec3(3, 0, 0)};

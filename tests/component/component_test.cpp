@@ -1,6 +1,7 @@
 // Each kind of component through the interface that the rest of the program uses.
 #include "muslin/component/component.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -46,8 +47,8 @@ class Kinds : public testing::Test {
       BodySettings body;
       body.name = kind;
       body.mesh = kind == "lattice" ? "box" : "sheet";
-      body.model = kind == "lattice" ? BodyModel::lattice : BodyModel::shell;
-      body.lattice.width = 0.5;
+      body.model = kind;
+      if (kind == "lattice") body.own.as<LatticeBodySettings>().lattice.width = 0.5;
       body.velocity = Vec3(1, 2, 3);
       body.material = find_material(kind == "lattice" ? "rubber" : "cotton");
       return source_of(body).build(inputs);
@@ -183,6 +184,22 @@ TEST_P(EveryKind, DescribesItselfAndWritesItsStages) {
 
 INSTANTIATE_TEST_SUITE_P(Components, EveryKind, testing::Values("lattice", "shell", "rigid", "fixed", "mesh"),
                          [](const auto& info) { return info.param; });
+
+TEST_F(Kinds, EveryBodyKindIsTestedHere) {
+  for (const BodyKind& kind : body_kinds()) {
+    EXPECT_EQ(build(kind.name)->kind(), kind.name);
+    EXPECT_EQ(kind.keys().name, kind.name);
+  }
+}
+
+TEST_F(Kinds, EveryColliderHasExactlyOneKind) {
+  ColliderSettings still, free;
+  free.density = 1;
+  for (const ColliderSettings& settings : {still, free})
+    EXPECT_EQ(std::count_if(collider_kinds().begin(), collider_kinds().end(),
+                            [&](const ColliderKind& kind) { return kind.is_meant(settings); }),
+              1);
+}
 
 TEST_F(Kinds, CastsSucceedForTheirKindOnly) {
   const auto lattice = build("lattice"), shell = build("shell"), rigid = build("rigid");

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/geometry/shapes.hpp"
 #include "muslin/io/mesh_file.hpp"
@@ -97,7 +98,7 @@ rotate = [0, 90, 0]
 scale = 2
 )",
                             {"collider.ball.radius=0.5", "contact.friction=0.4"});
-  EXPECT_EQ(scene.bodies[0].shell_thickness, 0.002);
+  EXPECT_EQ(scene.bodies[0].own.as<ShellBodySettings>().thickness, 0.002);
   EXPECT_FALSE(scene.bodies[0].self_contact);
   EXPECT_EQ(scene.contact.distance, 0.003);
   EXPECT_EQ(scene.contact.friction, 0.4);

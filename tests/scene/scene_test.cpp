@@ -10,6 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "muslin/component/lattice/lattice_body_settings.hpp"
+#include "muslin/scene/wind_force_settings.hpp"
+
 namespace muslin {
 namespace {
 
@@ -49,12 +52,13 @@ TEST(Scene, MissingKeysHaveDefaults) {
   EXPECT_EQ(scene.solver.error_tolerance(), 0.2);
   ASSERT_EQ(scene.bodies.size(), 1u);
   const BodySettings& body = scene.bodies.front();
-  EXPECT_EQ(body.lattice.rule, VoxelRule::cover);
-  EXPECT_EQ(body.bracing, Bracing::kuhn);
-  EXPECT_EQ(body.mass, BodySettings::Mass::solid);
-  EXPECT_EQ(body.boundary_springs, BodySettings::BoundarySprings::full);
+  const auto& own = body.own.as<LatticeBodySettings>();
+  EXPECT_EQ(own.lattice.rule, VoxelRule::cover);
+  EXPECT_EQ(own.bracing, Bracing::kuhn);
+  EXPECT_EQ(own.mass, LatticeBodySettings::Mass::solid);
+  EXPECT_EQ(own.boundary_springs, LatticeBodySettings::BoundarySprings::full);
   EXPECT_EQ(body.scale, Vec3(1, 1, 1));
-  EXPECT_FALSE(body.thickness);
+  EXPECT_FALSE(own.thickness);
   EXPECT_EQ(body.material.edge_modulus, 20000);
   EXPECT_TRUE(scene.pins.empty() && scene.forces.empty() && scene.probes.empty());
   EXPECT_TRUE(scene.warnings.empty());
@@ -141,13 +145,14 @@ at = [1, 2, 3]
   ASSERT_EQ(scene.bodies.size(), 2u);
   const BodySettings& body = scene.bodies[0];
   EXPECT_EQ(resolve_path(scene, body.mesh), std::filesystem::path("folder/meshes/a.obj"));
-  EXPECT_EQ(body.thickness, 0.5);
-  EXPECT_EQ(body.lattice.width, 0.25);
-  EXPECT_EQ(body.lattice.rule, VoxelRule::threshold);
-  EXPECT_EQ(body.lattice.threshold, 0.7);
-  EXPECT_EQ(body.bracing, Bracing::full);
-  EXPECT_EQ(body.mass, BodySettings::Mass::cells);
-  EXPECT_EQ(body.boundary_springs, BodySettings::BoundarySprings::shared);
+  const auto& own = body.own.as<LatticeBodySettings>();
+  EXPECT_EQ(own.thickness, 0.5);
+  EXPECT_EQ(own.lattice.width, 0.25);
+  EXPECT_EQ(own.lattice.rule, VoxelRule::threshold);
+  EXPECT_EQ(own.lattice.threshold, 0.7);
+  EXPECT_EQ(own.bracing, Bracing::full);
+  EXPECT_EQ(own.mass, LatticeBodySettings::Mass::cells);
+  EXPECT_EQ(own.boundary_springs, LatticeBodySettings::BoundarySprings::shared);
   EXPECT_EQ(body.translate, Vec3(1, 2, 3));
   EXPECT_EQ(body.rotate, Vec3(90, 0, 45));
   EXPECT_EQ(body.scale, Vec3(2, 2, 2));
@@ -177,9 +182,9 @@ at = [1, 2, 3]
   EXPECT_EQ(scene.forces[0].name, "gravity0");
   EXPECT_EQ(scene.forces[1].value.at(0.5), Vec3(1, 0, 0));
   EXPECT_EQ(scene.forces[1].until, 0.5);
-  EXPECT_EQ(scene.forces[2].air_density, 1.1);
-  EXPECT_EQ(scene.forces[2].drag, 2);
-  EXPECT_EQ(scene.forces[2].lift, 0.3);
+  EXPECT_EQ(scene.forces[2].own.as<WindForceSettings>().air_density, 1.1);
+  EXPECT_EQ(scene.forces[2].own.as<WindForceSettings>().drag, 2);
+  EXPECT_EQ(scene.forces[2].own.as<WindForceSettings>().lift, 0.3);
   EXPECT_EQ(scene.probes[0].at, Vec3(1, 2, 3));
 }
 
@@ -368,8 +373,9 @@ TEST(Override, ReplacesByNameByIndexAndInTablesThatAreMissing) {
        "force.0.acceleration=[0, 0, -1]", "pin.a.b.until=1.5", "solver.integrator=bdf2",
        "body.flag.material=thesis_flag"});
   EXPECT_EQ(scene.time.duration, 3);
-  EXPECT_EQ(scene.bodies[0].lattice.width, 0.5);
-  EXPECT_EQ(scene.bodies[0].thickness, 0.25);
+  const auto& own = scene.bodies[0].own.as<LatticeBodySettings>();
+  EXPECT_EQ(own.lattice.width, 0.5);
+  EXPECT_EQ(own.thickness, 0.25);
   EXPECT_EQ(scene.title, "bare word");
   EXPECT_EQ(scene.forces[0].value.at(0), Vec3(0, 0, -1));
   EXPECT_EQ(scene.pins[0].until, 1.5);

@@ -133,7 +133,7 @@ TEST_F(ShellModel, WarpRotatesWithTheBody) {
 
 TEST_F(ShellModel, StretchLimitIsASeparateTerm) {
   const Model model = build(body("sheet.obj", "stretch_limit = 1.08\n"));
-  EXPECT_EQ(model.scene.bodies[0].stretch_limit, 1.08);
+  EXPECT_EQ(model.scene.bodies[0].own.as<ShellBodySettings>().stretch_limit, 1.08);
   EXPECT_EQ(nlohmann::json::parse(model.scene.resolved)["body"][0]["stretch_limit"], 1.08);
   EXPECT_EQ(nlohmann::json::parse(describe_json(model))["bodies"][0]["stretch_limit"], 1.08);
   EXPECT_THAT(describe_text(model), HasSubstr("stretched to 1.08 of its length at most"));
@@ -149,7 +149,7 @@ TEST_F(ShellModel, StretchLimitIsASeparateTerm) {
   EXPECT_EQ(model.bodies[0].statistics.stable_step, build(body()).bodies[0].statistics.stable_step);
 
   const Scene without = parse_scene(body(), folder() / "scene.toml");
-  EXPECT_FALSE(without.bodies[0].stretch_limit);
+  EXPECT_FALSE(without.bodies[0].own.as<ShellBodySettings>().stretch_limit);
   EXPECT_FALSE(nlohmann::json::parse(without.resolved)["body"][0].contains("stretch_limit"));
   EXPECT_THAT(model.warnings, testing::IsEmpty());
   EXPECT_THAT(build(body("sheet.obj", "stretch_limit = 1.002\n")).warnings,

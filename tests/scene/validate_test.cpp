@@ -7,7 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "muslin/component/lattice/lattice_body_settings.hpp"
+#include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/scene/wind_force_settings.hpp"
 
 namespace muslin {
 namespace {
@@ -99,7 +102,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[solver]: `tolerance` is 0", [](Scene& s) { s.solver.tolerance = 0; }},
         Mistake{"[contact]: `distance` is -1", [](Scene& s) { s.contact.distance = -1; }},
         Mistake{"[contact]: `friction` is -1", [](Scene& s) { s.contact.friction = -1; }},
-        Mistake{"[[body]] `block`: `voxel_width` is 0", [](Scene& s) { s.bodies[0].lattice.width = 0; }},
+        Mistake{"[[body]] `block`: `voxel_width` is 0",
+                [](Scene& s) { s.bodies[0].own.as<LatticeBodySettings>().lattice.width = 0; }},
         Mistake{"[[body]] `block`: `density` is 0", [](Scene& s) { s.bodies[0].material.density = 0; }},
         Mistake{"[[body]] `block`: `edge_modulus` is -1",
                 [](Scene& s) { s.bodies[0].material.edge_modulus = -1; }},
@@ -108,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[[body]] `block`: `velocity` is not finite",
                 [](Scene& s) { s.bodies[0].velocity.x() = nan; }},
         Mistake{"[[body]] `block`: `model` is not one of its choices",
-                [](Scene& s) { s.bodies[0].model = BodyModel::rigid; }},
+                [](Scene& s) { s.bodies[0].model = "rigid"; }},
         Mistake{"[[body]] `sheet`: another one has its name", [](Scene& s) { s.bodies[0].name = "sheet"; }},
         Mistake{"[[body]]: it has no name", [](Scene& s) { s.bodies[0].name.clear(); }},
         Mistake{"[[body]] `sheet`: its material has no numbers for shells",
@@ -119,14 +123,17 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Scene& s) { s.bodies[1].material.shell->poisson = 1; }},
         Mistake{"[[body]] `sheet`: `bending_warp` is nan",
                 [](Scene& s) { s.bodies[1].material.shell->bending_warp = nan; }},
-        Mistake{"[[body]] `sheet`: `stretch_limit` is 1", [](Scene& s) { s.bodies[1].stretch_limit = 1; }},
+        Mistake{"[[body]] `sheet`: `stretch_limit` is 1",
+                [](Scene& s) { s.bodies[1].own.as<ShellBodySettings>().stretch_limit = 1; }},
         Mistake{"[[body]] `sheet`: with 0 N·m at 45° between 1 and 0.01 N·m and a Poisson ratio of",
                 [](Scene& s) {
                   ShellMaterial& shell = *s.bodies[1].material.shell;
                   shell.bending_warp = 1, shell.bending_weft = 0.01, shell.bending_bias = 0;
                 }},
         Mistake{"[[body]] `block`: `voxels` is not one of its choices",
-                [](Scene& s) { s.bodies[0].lattice.rule = static_cast<VoxelRule>(7); }},
+                [](Scene& s) {
+                  s.bodies[0].own.as<LatticeBodySettings>().lattice.rule = static_cast<VoxelRule>(7);
+                }},
         Mistake{"[[body]] `block`: a colour is red, green and blue from 0 to 1",
                 [](Scene& s) { s.bodies[0].colour = Vec3(0, nan, 0); }},
         Mistake{"[[body]] `block`: `scale` has a component of 0",
@@ -150,14 +157,21 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[[pin]] `hook`: `keyframes` and `sequence` both say how the pin moves",
                 [](Scene& s) { s.pins[0].sequence = "walk.pc2"; }},
         Mistake{"there is no body `flag`", [](Scene& s) { s.forces[0].body = "flag"; }},
+        Mistake{"[[force]] `pull`: `type` is not one of its choices",
+                [](Scene& s) { s.forces[1].type = "push"; }},
         Mistake{"it has no value", [](Scene& s) { s.forces[0].value.keys.clear(); }},
         Mistake{"`value` is not finite", [](Scene& s) { s.forces[0].value.keys[0].value.y() = inf; }},
         Mistake{"[[force]] `pull`: a point force has no `where`",
                 [](Scene& s) { s.forces[1].where.reset(); }},
+        Mistake{"[[force]] `breeze`: wind does not blow on rigid bodies",
+                [](Scene& s) { s.forces[2].body = "ball"; }},
         Mistake{"[[force]] `breeze`: `gust_length` is 0; give a number from 1e-06 to 1000000 [m]",
-                [](Scene& s) { s.forces[2].gust_length = 0; }},
+                [](Scene& s) { s.forces[2].own.as<WindForceSettings>().gust_length = 0; }},
         Mistake{"[[force]] `breeze`: `lift` = 2 is above `drag` = 1",
-                [](Scene& s) { s.forces[2].lift = 2, s.forces[2].drag = 1; }},
+                [](Scene& s) {
+                  auto& wind = s.forces[2].own.as<WindForceSettings>();
+                  wind.lift = 2, wind.drag = 1;
+                }},
         Mistake{"[[probe]] `tip`: there is no body `tip`", [](Scene& s) { s.probes[0].body = "tip"; }},
         Mistake{"[[probe]] `tip`: `at` is not finite", [](Scene& s) { s.probes[0].at.z() = nan; }},
         Mistake{"the mesh `a.obj` is null", [](Scene& s) { s.meshes["a.obj"] = nullptr; }}));

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/scene/model.hpp"
@@ -63,9 +64,9 @@ Scene hanging(Mesh mesh, bool contact = false) {
   BodySettings body;
   body.name = "cloth";
   body.mesh = "square";
-  body.model = BodyModel::shell;
+  body.model = "shell";
   body.material.shell = fabric();
-  body.warp = Vec3::UnitX();
+  body.own.as<ShellBodySettings>().warp = Vec3::UnitX();
   body.velocity = Vec3(0, 0, 0.3);
   scene.bodies.push_back(body);
   PinSettings pin;

@@ -58,7 +58,6 @@ Selections selections_of(const Model& model) {
   }
   for (std::size_t f = 0; f < model.scene.forces.size(); ++f) {
     const ForceSettings& force = model.scene.forces[f];
-    if (force.type != ForceSettings::Type::point) continue;
     if (!force.where) continue;
     const Component& body = model.body(force.body);
     if (body.selects_vertices() != caches_vertices(body)) continue;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "muslin/component/description.hpp"
 #include "muslin/component/select.hpp"
 #include "muslin/core/hash.hpp"
 #include "muslin/geometry/closest_point.hpp"
@@ -106,7 +107,7 @@ void Component::write_stages(const std::filesystem::path& folder, const Progress
 std::string Component::description_json() const {
   const nlohmann::ordered_json json = {
       {"name", name}, {"model", kind()}, {"vertices", vertex_count}, {"mass", statistics.mass}};
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return to_line(json);
 }
 
 std::string Component::description() const {

@@ -1,14 +1,13 @@
-// Builds the forces, pins and probes of the model from those of the scene.
+// Builds the pins and probes of the model from those of the scene.
 #pragma once
 
 #include "muslin/scene/model.hpp"
 
 namespace muslin {
 
-/// Adds the forces, the pins and the probes of model.scene to `model`, whose components, rest positions and
+/// Adds the pins and the probes of model.scene to `model`, whose components, rest positions and
 /// masses already exist. Errors: input, with the place in the scene.
 void build_pins(Model& model);
-void build_forces(Model& model);
 void build_probes(Model& model);
 
 }  // namespace muslin

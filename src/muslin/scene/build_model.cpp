@@ -11,6 +11,7 @@
 #include "muslin/potential/restricted.hpp"
 #include "muslin/scene/build_contact.hpp"
 #include "muslin/scene/build_loads.hpp"
+#include "muslin/scene/force_kinds.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/validate.hpp"
 

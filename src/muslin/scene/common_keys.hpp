@@ -8,45 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "muslin/constraint/pin.hpp"
+#include "muslin/component/component_keys.hpp"
 #include "muslin/scene/scene.hpp"
 #include "muslin/schema/declare.hpp"
 
 namespace muslin {
 
-/// Throws Error(input) unless `name` is valid in file names and paths: not empty, no separators or control
-/// characters.
-void require_name(const std::string& name, const Place& place);
-
-/// The key `name`; `otherwise` describes the default name.
-template <class S>
-schema::Declaration name_key(std::string otherwise) {
-  return schema::custom<S>(
-             "name", {schema::Type::text},
-             [](const schema::Key& key, const TomlTable& table, S& s) {
-               s.name = table.string(key.name);
-               require_name(s.name, table.place(key.name));
-             },
-             [](const schema::Key& key, const S& s, TomlValue& out) {
-               schema::append(out, key.name, schema::words(s.name));
-             })
-      .otherwise(std::move(otherwise));
-}
-
-/// The key `scale`: a number or one per axis.
-schema::Declaration scale_key(Vec3 BodySettings::* member);
-schema::Declaration scale_key(Vec3 ColliderSettings::* member);
-
-template <class S>
-schema::Declaration friction_key(std::optional<double> S::* member) {
-  return schema::number("friction", member)
-      .range({0, 100, false})
-      .may_change_on_resume()
-      .otherwise("that of `[contact]`")
-      .means("Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean");
-}
-
-/// The keys `from` and `until`; `otherwise` describes the default end. check_window is their rule.
+/// `from` and `until`; `otherwise` states the end where it is not given. check_window is their rule.
 template <class S>
 std::vector<schema::Key> window_keys(double S::* from, double S::* until, const char* from_means,
                                      const char* until_means, const char* otherwise) {
@@ -75,10 +43,6 @@ schema::Declaration keyed_number_key(std::string name, KeyedNumber S::* member, 
   };
   return schema::Declaration(std::move(key));
 }
-
-/// `keyframes` of a motion.
-schema::Declaration motion_key();
-const schema::Table& motion_keyframe_table();  ///< of Motion::Key
 
 /// Returns the names of all that have mass: bodies, and colliders with a density.
 std::vector<std::string> movable_names(const Scene& scene);

@@ -109,7 +109,7 @@ std::string describe_json(const Model& model, std::span<const Crossing> crossing
   }
   json["forces"] = Json::array();
   for (const ForceSettings& force : scene.forces) {
-    json["forces"].push_back({{"name", force.name}, {"type", name_of(force_type_names(), force.type)}});
+    json["forces"].push_back({{"name", force.name}, {"type", force.type}});
   }
   json["probes"] = Json::array();
   for (const Probe& probe : model.probes) json["probes"].push_back({{"name", probe.name}});

@@ -35,7 +35,7 @@ schema::Table declared() {
           .means("motion, in place of `keyframes`: a file with the position of every vertex of the body's "
                  "mesh per "
                  "frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. Metres, y up, in the world"));
-  table.keys.push_back(schema::within(
+  table.keys.push_back(schema::within<PinSettings>(
       &PinSettings::motion,
       motion_key()
           .excludes("sequence", both_move("keyframes"))

@@ -2,7 +2,6 @@
 // file for later error messages.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -23,6 +22,7 @@
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/pressure.hpp"
+#include "muslin/schema/own_settings.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
@@ -56,20 +56,17 @@ struct PinSettings {
 };
 
 struct ForceSettings {
-  enum class Type { gravity, point, wind } type = Type::gravity;
+  std::string type = "gravity";  ///< its kind: "gravity", "point" or "wind"
   std::string name;
   std::string body;                ///< empty: every body
   std::optional<Selection> where;  ///< point forces; none: the centre of mass of a rigid body
-  Keyed value;  ///< gravity: acceleration [m/s²]; point: force on each selected vertex [N]; wind: velocity
-                ///< [m/s]
+  /// gravity: acceleration [m/s²]; point: force on each selected vertex [N]; wind: velocity [m/s]
+  Keyed value;
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
-  double air_density = 1.2;                                          ///< wind [kg/m³]
-  double drag = 1.17;                                                ///< wind, drag coefficient C_D
-  double lift = 0.0;                                                 ///< wind, lift coefficient C_L ≤ C_D
-  double gust = 0.0;         ///< wind, root mean square of each component of the turbulence [m/s]
-  double gust_length = 1.0;  ///< wind, size of its largest eddies [m]
-  std::int64_t seed = 1;     ///< wind, decides the turbulence
+  OwnSettings own;  ///< those of its kind, such as WindForceSettings
   Place place;
+
+  bool acts_on(const std::string& name_of_body) const { return body.empty() || body == name_of_body; }
 };
 
 struct ProbeSettings {

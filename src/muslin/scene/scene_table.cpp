@@ -1,9 +1,10 @@
 #include "muslin/scene/scene_table.hpp"
 
-#include "muslin/scene/body_table.hpp"
-#include "muslin/scene/collider_table.hpp"
+#include "muslin/component/body_table.hpp"
+#include "muslin/component/collider/collider_table.hpp"
+#include "muslin/component/kinds.hpp"
 #include "muslin/scene/common_keys.hpp"
-#include "muslin/scene/force_table.hpp"
+#include "muslin/scene/force_kinds.hpp"
 #include "muslin/scene/names.hpp"
 #include "muslin/scene/pin_table.hpp"
 #include "muslin/scene/scene.hpp"
@@ -157,6 +158,22 @@ void warn_of_unused(const TomlTable& table, Scene& scene) {
   if (linear && adaptive && solver.effort == Effort::exact) warn("effort", name + " but for drafts", choose);
 }
 
+void finish_body(const TomlTable& table, std::size_t, BodySettings& body, Scene& scene) {
+  complete_name(table, std::filesystem::path(body.mesh).stem().string(), body.name);
+  const BodyKind& kind = kind_of(body);
+  if (kind.finish != nullptr) kind.finish(table, scene.file.parent_path(), body, scene.warnings);
+  require_new_name(table, scene.bodies, "body", "body", body.name);
+}
+
+void finish_collider(const TomlTable& table, std::size_t index, ColliderSettings& collider,
+                     const Scene& scene) {
+  const std::string stem = std::filesystem::path(collider.mesh).stem().string();
+  const std::string numbered = fmt::format("{}{}", name_of(collider.shape), index);
+  complete_name(table, stem.empty() ? numbered : stem, collider.name);
+  require_new_name(table, scene.bodies, "body", "collider", collider.name);
+  require_new_name(table, scene.colliders, "collider", "collider", collider.name);
+}
+
 void finish_probe(const TomlTable& table, std::size_t index, ProbeSettings& probe, const Scene& scene) {
   complete_name(table, fmt::format("probe{}", index), probe.name);
   if (!table.has("body") || !is_rigid(scene, probe.body)) resolve_body(table, scene, false, probe.body);
@@ -176,10 +193,7 @@ schema::Table declared() {
                     .may_change_on_resume()
                     .otherwise("see below")
                     .means("integrator and accuracy"),
-                schema::sections("body", &Scene::bodies, body_table,
-                                 [](const TomlTable& table, std::size_t, BodySettings& body, Scene& scene) {
-                                   finish_body(table, body, scene);
-                                 })
+                schema::sections("body", &Scene::bodies, body_table, finish_body)
                     .otherwise("at least one, or a collider with a density")
                     .means("the simulated bodies"),
                 schema::sections("collider", &Scene::colliders, collider_table, finish_collider)

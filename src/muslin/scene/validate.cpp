@@ -10,6 +10,7 @@
 #include "muslin/core/error.hpp"
 #include "muslin/core/nearest_name.hpp"
 #include "muslin/scene/common_keys.hpp"
+#include "muslin/scene/force_kinds.hpp"
 #include "muslin/scene/scene_table.hpp"
 
 namespace muslin {
@@ -40,10 +41,9 @@ void check_body_name(const Subject& subject, const std::string& name, const std:
 
 void check_force(const Scene& scene, const ForceSettings& force, const std::vector<std::string>& movable) {
   const Subject subject = subject_of("[[force]]", force);
-  const bool point = force.type == ForceSettings::Type::point;
-  if (!force.body.empty() || point) check_body_name(subject, force.body, movable);
-  if (point && !is_rigid(scene, force.body) && !force.where)
-    throw subject.error("where", "a point force has no `where`", "select the vertices it acts on");
+  const ForceKind& kind = kind_of(force);
+  if (!force.body.empty() || kind.on_one_body) check_body_name(subject, force.body, movable);
+  if (kind.check != nullptr) kind.check(force, scene, subject);
 }
 
 }  // namespace

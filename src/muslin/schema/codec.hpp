@@ -1,9 +1,11 @@
 // Codecs read, write and check the values of keys.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -62,24 +64,39 @@ struct TextCodec {
   void check(const Key&, const std::string&, const Subject&) const {}
 };
 
+/// The value is one of the key's choices as a text, or the enumerator at its place.
 struct WordCodec {
   std::vector<Type> types() const { return {Type::word}; }
   Range range() const { return {}; }
   template <class T>
   T read(const Key& key, const TomlTable& table) const {
-    return static_cast<T>(table.choice(key.name, key.choices, 0));
+    const std::size_t index = table.choice(key.name, key.choices, 0);
+    if constexpr (std::is_same_v<T, std::string>) {
+      return key.choices[index];
+    } else {
+      return static_cast<T>(index);
+    }
   }
   template <class T>
-  TomlValue write(const Key& key, T choice) const {
-    const auto index = static_cast<std::size_t>(choice);
+  TomlValue write(const Key& key, const T& choice) const {
+    const std::size_t index = index_of(key, choice);
     return words(index < key.choices.size() ? key.choices[index] : "");
   }
   template <class T>
-  void check(const Key& key, T choice, const Subject& subject) const {
-    check_index(key, static_cast<std::size_t>(choice), subject);
+  void check(const Key& key, const T& choice, const Subject& subject) const {
+    check_index(key, index_of(key, choice), subject);
   }
 
  private:
+  template <class T>
+  static std::size_t index_of(const Key& key, const T& choice) {
+    if constexpr (std::is_same_v<T, std::string>) {
+      const auto& words = key.choices;
+      return static_cast<std::size_t>(std::find(words.begin(), words.end(), choice) - words.begin());
+    } else {
+      return static_cast<std::size_t>(choice);
+    }
+  }
   static void check_index(const Key& key, std::size_t index, const Subject& subject);
 };
 

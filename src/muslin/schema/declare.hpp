@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -148,7 +149,7 @@ template <class S, class T>
 Declaration text(std::string name, T S::* member) {
   return stored(std::move(name), member, TextCodec{});
 }
-/// `choices` must be in the order of the enumeration.
+/// The member is a text, or an enumeration whose values are in the order of `choices`.
 template <class S, class T>
 Declaration word(std::string name, T S::* member, std::vector<std::string> choices) {
   Key key = stored(std::move(name), member, WordCodec{});
@@ -304,14 +305,15 @@ Declaration keyframes(std::string name, std::vector<T> S::* member, const Table&
   return Declaration(std::move(key));
 }
 
-/// Adapts a key of settings Inner to settings Outer that have them as a member.
-template <class Outer, class Inner>
-Key within(Inner Outer::* member, Key key) {
-  const auto inner = [member](const void* s) -> const void* {
-    return &(static_cast<const Outer*>(s)->*member);
+/// Adapts a key of some settings to settings Outer that contain them. `find` is a pointer to the member that
+/// holds them, or a function from Outer& and const Outer& to a reference.
+template <class Outer, class Find>
+Key within(Find find, Key key) {
+  const auto inner = [find](const void* s) -> const void* {
+    return &std::invoke(find, *static_cast<const Outer*>(s));
   };
-  key.read = [member, read = key.read](const Key& k, const TomlTable& table, void* s) {
-    read(k, table, &(static_cast<Outer*>(s)->*member));
+  key.read = [find, read = key.read](const Key& k, const TomlTable& table, void* s) {
+    read(k, table, &std::invoke(find, *static_cast<Outer*>(s)));
   };
   key.write = [inner, write = key.write](const Key& k, const void* s, TomlValue& out) {
     write(k, inner(s), out);
@@ -339,31 +341,37 @@ Table table_of(std::string name, std::vector<Key> keys) {
   return table;
 }
 
-/// Adds the keys, the completion and the rules of a table of settings that the member holds.
-template <class Outer, class Inner>
-void include(Table& table, Inner Outer::* member, const Table& inner) {
-  for (const Key& key : inner.keys) table.keys.push_back(within(member, key));
+/// Adds the keys, the completion and the rules of a table of settings that `find` finds, as for `within`.
+template <class Outer, class Find>
+void include(Table& table, Find find, const Table& inner) {
+  for (const Key& key : inner.keys) table.keys.push_back(within<Outer>(find, key));
   if (inner.complete) {
-    table.complete = [member, complete = inner.complete](const TomlTable& given, void* s) {
-      complete(given, &(static_cast<Outer*>(s)->*member));
+    table.complete = [find, complete = inner.complete](const TomlTable& given, void* s) {
+      complete(given, &std::invoke(find, *static_cast<Outer*>(s)));
     };
   }
   for (const auto& rule : inner.rules) {
-    table.rules.push_back([member, rule](const void* s, const Subject& subject) {
-      rule(&(static_cast<const Outer*>(s)->*member), subject);
+    table.rules.push_back([find, rule](const void* s, const Subject& subject) {
+      rule(&std::invoke(find, *static_cast<const Outer*>(s)), subject);
     });
   }
 }
 
-/// Lets the key `name`, whose value is the member, select further keys.
+/// Lets the key `name`, whose value is the member, select further keys. A member of an enumeration has the
+/// order of the variants, a text is the word of one.
 template <class S, class T>
 void choose(Table& table, std::string_view name, T S::* member, std::vector<Variant> variants) {
   const auto at =
       std::find_if(table.keys.begin(), table.keys.end(), [&](const Key& key) { return key.name == name; });
   table.chooser = static_cast<std::size_t>(at - table.keys.begin());
   table.variants = std::move(variants);
-  table.chosen = [member](const void* s) {
-    return static_cast<std::size_t>(static_cast<const S*>(s)->*member);
+  table.chosen = [member, words = at->choices](const void* s) {
+    const T& value = static_cast<const S*>(s)->*member;
+    if constexpr (std::is_same_v<T, std::string>) {
+      return static_cast<std::size_t>(std::find(words.begin(), words.end(), value) - words.begin());
+    } else {
+      return static_cast<std::size_t>(value);
+    }
   };
 }
 

@@ -152,6 +152,8 @@ void Table::read_erased(const TomlTable& table, void* settings) const {
     if (table.has(key->name)) key->read(*key, table, settings);
   }
   if (complete) complete(table, settings);
+  if (variant < variants.size() && variants[variant].table().complete)
+    variants[variant].table().complete(table, settings);
   const Subject subject(table);
   for (const auto& rule : rules) rule(settings, subject);
   if (variant < variants.size())

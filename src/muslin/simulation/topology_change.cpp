@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "muslin/component/shell/shell_body.hpp"
+#include "muslin/component/kinds.hpp"
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
@@ -121,12 +121,13 @@ void Simulation::cut(const std::string& body, std::span<const std::array<int, 2>
   const auto settings = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                      [&](const BodySettings& b) { return b.name == body; });
   const Component& before = model().body(body);
-  if (as_shell(before) == nullptr || settings == scene.bodies.end())
+  if (settings == scene.bodies.end() || kind_of(*settings).cut_meshes == nullptr)
     throw Error(ErrorKind::usage,
                 fmt::format("\"{}\" is no shell of the scene, and only these can be cut", body),
                 "give the name of a [[body]] that is a shell");
-  if (!settings->rest_mesh.empty()) cut_mesh(scene, body, settings->rest_mesh, edges);
-  const std::vector<int> cut_origins = cut_mesh(scene, body, settings->mesh, edges);
+  std::vector<int> cut_origins;
+  for (std::string* path : kind_of(*settings).cut_meshes(*settings))
+    cut_origins = cut_mesh(scene, body, *path, edges);
 
   auto next = std::make_shared<const Model>(build_model(scene));
   std::vector<int> origins;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "muslin/component/description.hpp"
 #include "muslin/component/placement.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/geometry/edge_length.hpp"
@@ -137,7 +138,7 @@ std::string ColliderComponent::description_json() const {
   if (!is_prescribed()) json["mass"] = statistics.mass;
   json["vertices"] = mesh.vertex_count();
   json["triangles"] = statistics.triangles;
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return to_line(json);
 }
 
 std::string ColliderComponent::description() const {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/component/collider/collider_kind.hpp"
 #include "muslin/io/point_sequence_file.hpp"
 
 namespace muslin {
@@ -52,6 +53,30 @@ std::shared_ptr<const PointSequence> read_sequence(const ColliderSettings& c, co
   return std::make_shared<const PointSequence>(std::move(sequence));
 }
 
+std::vector<schema::Key> sequence_keys(ColliderSettings::Shape shape) {
+  using Collider = ColliderSettings;
+  if (shape != Collider::Shape::mesh) return {};
+  return {
+      schema::path("sequence", &Collider::sequence, &Collider::sequence_place)
+          .means("motion, in place of `keyframes`: a file with the position of every vertex of the mesh per "
+                 "frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. `translate`, `rotate` and "
+                 "`scale` "
+                 "apply to it as to the mesh"),
+      schema::number("frame_rate", &Collider::frame_rate)
+          .unit("1/s")
+          .range({1e-6, 1e6, false})
+          .otherwise("the scene's")
+          .needs("sequence", "take it out")
+          .means("frames per second of the sequence; not for an `.mdd`, which stores its own frame times"),
+      schema::number("start", &Collider::start)
+          .unit("s")
+          .range({-1e9, 1e9, false})
+          .otherwise("as the file says, or 0")
+          .needs("sequence", "take it out")
+          .means("time of the first sample; the collider stands still before the first and after the last "
+                 "sample")};
+}
+
 }  // namespace
 
 KinematicBody::KinematicBody(const ColliderSettings& the_settings, const ComponentInputs& inputs) {
@@ -94,9 +119,13 @@ std::optional<ContactPart> KinematicMesh::contact_part() const {
   return part;
 }
 
-std::shared_ptr<Component> build_kinematic(const ColliderSettings& settings, const ComponentInputs& inputs) {
-  if (settings.sequence.empty()) return std::make_shared<KinematicBody>(settings, inputs);
-  return std::make_shared<KinematicMesh>(settings, inputs);
-}
+const ColliderKind kinematic_kind = {
+    .is_meant = [](const ColliderSettings& settings) { return !settings.is_free(); },
+    .keys = sequence_keys,
+    .build = [](const ColliderSettings& settings,
+                const ComponentInputs& inputs) -> std::shared_ptr<Component> {
+      if (settings.sequence.empty()) return std::make_shared<KinematicBody>(settings, inputs);
+      return std::make_shared<KinematicMesh>(settings, inputs);
+    }};
 
 }  // namespace muslin

@@ -47,7 +47,7 @@ class KinematicMesh final : public ColliderComponent {
   std::vector<Vec3> velocities_;
 };
 
-/// Builds a collider without density. Errors: input and file, with the place in the scene and the file.
-std::shared_ptr<Component> build_kinematic(const ColliderSettings& settings, const ComponentInputs& inputs);
+struct ColliderKind;
+extern const ColliderKind kinematic_kind;
 
 }  // namespace muslin

@@ -37,7 +37,7 @@ Progress part_of(const Progress& whole, double begin, double end) {
 class LatticeBuilder {
  public:
   LatticeBuilder(const BodySettings& settings, const ComponentInputs& inputs)
-      : settings_(settings), inputs_(inputs) {
+      : settings_(settings), own_(settings.own.as<LatticeBodySettings>()), inputs_(inputs) {
     body_.settings = settings;
   }
 
@@ -56,12 +56,12 @@ class LatticeBuilder {
 
   void make_solid() {
     MeshKind kind = kind_of(body_.mesh, body_.report);
-    if (kind == MeshKind::holed_solid && settings_.thickness) kind = MeshKind::sheet;
+    if (kind == MeshKind::holed_solid && own_.thickness) kind = MeshKind::sheet;
     body_.sheet = kind == MeshKind::sheet;
     if (body_.sheet) {
-      body_.thickness = settings_.thickness.value_or(settings_.lattice.width);
+      body_.thickness = own_.thickness.value_or(own_.lattice.width);
       body_.solid = thicken(body_.mesh, body_.thickness);
-      if (!settings_.thickness) {
+      if (!own_.thickness) {
         say(
             fmt::format("the mesh is a sheet; its thickness is taken as one voxel width, {} m; set "
                         "`thickness` to choose it",
@@ -69,7 +69,7 @@ class LatticeBuilder {
       }
       return;
     }
-    if (settings_.thickness) say("the mesh is closed, so `thickness` has no effect");
+    if (own_.thickness) say("the mesh is closed, so `thickness` has no effect");
     if (kind == MeshKind::holed_solid) {
       say(fmt::format(
           "the mesh has {} open edges around small holes and is filled as a solid; set `thickness` "
@@ -83,11 +83,11 @@ class LatticeBuilder {
     progress.at(0.1, "distance field");
     const SignedDistance distance(body_.solid);
     progress.at(0.2, "voxels");
-    body_.lattice = build_lattice(body_.solid, distance, settings_.lattice, part_of(progress, 0.2, 0.7));
+    body_.lattice = build_lattice(body_.solid, distance, own_.lattice, part_of(progress, 0.2, 0.7));
     progress.at(0.7, "springs");
     const std::vector<double> fill = body_.lattice.fill;
     body_.lattice.fill = body_.voxel_shares();
-    body_.springs = build_springs(body_.lattice, settings_.bracing);
+    body_.springs = build_springs(body_.lattice, own_.bracing);
     body_.lattice.fill = fill;
     progress.at(0.8, "skin");
     body_.skin = embed(body_.lattice, body_.mesh.positions);
@@ -111,7 +111,7 @@ class LatticeBuilder {
   }
 
   void advise() {
-    const double width = settings_.lattice.width;
+    const double width = own_.lattice.width;
     if (body_.lattice.coverage < 1 - 1e-6) {
       say(
           fmt::format("{:.3g} % of its surface lies outside the voxels; use `voxels = \"cover\"` or a higher "
@@ -170,8 +170,8 @@ class LatticeBuilder {
 
   /// Returns #springs factors of the spring constants; empty if all are 1.
   std::vector<float> spring_weights() const {
-    if (settings_.boundary_springs == BodySettings::BoundarySprings::shared) return body_.springs.share;
-    if (settings_.mass == BodySettings::Mass::solid) return body_.springs.mean_fill;
+    if (own_.boundary_springs == LatticeBodySettings::BoundarySprings::shared) return body_.springs.share;
+    if (own_.mass == LatticeBodySettings::Mass::solid) return body_.springs.mean_fill;
     return {};
   }
 
@@ -185,6 +185,7 @@ class LatticeBuilder {
   }
 
   const BodySettings& settings_;
+  const LatticeBodySettings& own_;
   const ComponentInputs& inputs_;
   std::shared_ptr<LatticeBody> built_ = std::make_shared<LatticeBody>();
   LatticeBody& body_ = *built_;

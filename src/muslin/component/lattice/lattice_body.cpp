@@ -41,7 +41,7 @@ std::vector<Vec3> group_points(const Mesh& mesh, const MeshGroup& group, double 
 }  // namespace
 
 std::vector<double> LatticeBody::voxel_shares() const {
-  if (settings.mass == BodySettings::Mass::solid) return lattice.fill;
+  if (own().mass == LatticeBodySettings::Mass::solid) return lattice.fill;
   return std::vector<double>(lattice.voxel_count(), 1.0);
 }
 
@@ -125,9 +125,9 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
   part.body.radius = sheet ? thickness / 2 : 0;
   const Material& m = settings.material;
   const ElasticModuli moduli = elastic_moduli(
-      {m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus}, settings.bracing, m.volume_modulus);
+      {m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus}, own().bracing, m.volume_modulus);
   // The springs of a sheet have the stiffness of its thickness, unless every voxel counts full.
-  const bool thin = sheet && settings.mass == BodySettings::Mass::solid;
+  const bool thin = sheet && own().mass == LatticeBodySettings::Mass::solid;
   part.body.stiffness = contact_stiffness_share * (moduli.youngs + m.youngs_modulus.value_or(0)) *
                         (thin ? std::min(lattice.width, thickness) : lattice.width);
   // A body without stretch resistance still needs contact to carry its weight.
@@ -144,7 +144,9 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
 
 std::uint64_t LatticeBody::shape_hash(std::uint64_t seed) const { return range_hash(seed, springs.count); }
 
-std::uint64_t LatticeBody::material_hash(std::uint64_t seed) const { return settings_hash(settings, seed); }
+std::uint64_t LatticeBody::material_hash(std::uint64_t seed) const {
+  return muslin::material_hash(settings.material, static_cast<double>(own().boundary_springs), seed);
+}
 
 const LatticeBody* as_lattice(const Component& component) {
   return dynamic_cast<const LatticeBody*>(&component);

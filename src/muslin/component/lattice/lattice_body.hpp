@@ -12,6 +12,7 @@
 
 #include "muslin/component/body_settings.hpp"
 #include "muslin/component/component.hpp"
+#include "muslin/component/lattice/lattice_body_settings.hpp"
 #include "muslin/lattice/lattice.hpp"
 #include "muslin/lattice/springs.hpp"
 #include "muslin/surface/contour.hpp"
@@ -52,12 +53,12 @@ class LatticeBody final : public Component {
   std::string description_json() const override;
   std::string description() const override;
 
+  const LatticeBodySettings& own() const { return settings.own.as<LatticeBodySettings>(); }
   /// Returns the share by which each voxel counts: its fill, or 1 with Mass::cells.
   std::vector<double> voxel_shares() const;
 };
 
-/// Builds a body of BodyModel::lattice. Errors: input and file, with the place in the scene and the mesh
-/// file.
+/// Builds a lattice. Errors: input and file, with the place in the scene and the mesh file.
 std::shared_ptr<Component> build_lattice_body(const BodySettings& settings, const ComponentInputs& inputs);
 
 /// Returns the component as a lattice, null if it is of another kind. Only for features that lattices alone

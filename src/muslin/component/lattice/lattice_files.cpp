@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "muslin/component/description.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
+#include "muslin/component/lattice/lattice_kind.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/field/signed_distance.hpp"
 #include "muslin/io/mesh_file.hpp"
@@ -104,18 +106,11 @@ std::string LatticeBody::description_json() const {
   json["voxel_width"] = lattice.width;
   json["extent"] = {lattice.extent.x(), lattice.extent.y(), lattice.extent.z()};
   json["material"] = settings.material.name;
-  json["vertices"] = s.vertices;
-  json["voxels"] = s.voxels;
-  json["tetrahedra"] = s.tetrahedra;
-  json["springs"] = {
-      {"edge", s.springs[0]}, {"face_diagonal", s.springs[1]}, {"body_diagonal", s.springs[2]}};
-  json["mass"] = s.mass;
-  json["coverage"] = s.coverage;
+  append_counts(json, s);
   json["contour"] = name_of(contour.method);
   json["contour_distance"] = s.contour_distance;
-  json["stable_step"] =
-      std::isfinite(s.stable_step) ? nlohmann::ordered_json(s.stable_step) : nlohmann::ordered_json(nullptr);
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  append_stable_step(json, s);
+  return to_line(json);
 }
 
 std::string LatticeBody::description() const {
@@ -128,7 +123,7 @@ std::string LatticeBody::description() const {
                       s.voxels, lattice.width, n.x(), n.y(), n.z(), 100 * s.coverage);
   text += fmt::format("  lattice     {} vertices, {} tetrahedra\n", s.vertices, s.tetrahedra);
   text += fmt::format("  springs     {} edge, {} face diagonal, {} body diagonal ({})\n", s.springs[0],
-                      s.springs[1], s.springs[2], settings.bracing == Bracing::kuhn ? "kuhn" : "full");
+                      s.springs[1], s.springs[2], bracing_names()[static_cast<std::size_t>(own().bracing)]);
   text += fmt::format("  mass        {:.6g} kg of {}\n", s.mass, settings.material.name);
   text += fmt::format("  contour     marching {}, at most {:.3g} m from the mesh\n", name_of(contour.method),
                       s.contour_distance);

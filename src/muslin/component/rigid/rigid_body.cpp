@@ -1,9 +1,11 @@
 #include "muslin/component/rigid/rigid_body.hpp"
 
 #include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "muslin/component/collider/collider_kind.hpp"
 #include "muslin/component/solid.hpp"
 #include "muslin/energy/affine_body.hpp"
 #include "muslin/potential/stopping_time.hpp"
@@ -24,6 +26,32 @@ void require_solid(const ColliderSettings& c, const MeshReport& report, const Me
               fmt::format("collider {}: {} does not enclose a solid, so it has no mass", c.name, c.mesh),
               report.flipped_edges > 0 ? "let all its faces look outward"
                                        : "close its holes, or leave `density` out");
+}
+
+std::vector<schema::Key> rigid_keys(ColliderSettings::Shape shape) {
+  using Collider = ColliderSettings;
+  if (shape == Collider::Shape::plane) return {};
+  const char* remedy = "give a `density` to let it move by itself, or `keyframes`";
+  const auto is_free = [](const Collider& collider) { return collider.is_free(); };
+  return {
+      schema::number("density", &Collider::density)
+          .unit("kg/m³")
+          .range({1e-6, 1e9, false})
+          .excludes("sequence", "`density` stands beside `sequence`, which says how it moves")
+          .excludes("keyframes", "`density` makes a body that moves by itself, `keyframes` say how it moves",
+                    "keep one of them; a [[pin]] holds or moves a body for a while")
+          .means("makes it a rigid body of this density; a mesh must be closed. Without it gravity and other "
+                 "forces do not act on it"),
+      schema::vector("velocity", &Collider::velocity)
+          .unit("m/s")
+          .needs("density", remedy)
+          .shown_if<Collider>(is_free)
+          .means("at the start; only with a density"),
+      schema::vector("angular_velocity", &Collider::angular_velocity)
+          .unit("degrees/s")
+          .needs("density", remedy)
+          .shown_if<Collider>(is_free)
+          .means("at the start, about its centre of mass, along the axis of rotation; only with a density")};
 }
 
 }  // namespace
@@ -63,8 +91,10 @@ void RigidBody::predict(Integrator integrator, const State& state, std::span<con
   if (fixed[first] == 0) predict_rigid(integrator, state, first, context);
 }
 
-std::shared_ptr<Component> build_rigid_body(const ColliderSettings& settings, const ComponentInputs& inputs) {
-  return std::make_shared<RigidBody>(settings, inputs);
-}
+const ColliderKind rigid_kind = {
+    .is_meant = [](const ColliderSettings& settings) { return settings.is_free(); },
+    .keys = rigid_keys,
+    .build = [](const ColliderSettings& settings, const ComponentInputs& inputs)
+        -> std::shared_ptr<Component> { return std::make_shared<RigidBody>(settings, inputs); }};
 
 }  // namespace muslin

@@ -14,7 +14,7 @@ namespace muslin {
 
 class RigidBody final : public AffineCollider {
  public:
-  /// Errors: as build_rigid_body.
+  /// Errors: input and file, with the place in the scene and the mesh file.
   RigidBody(const ColliderSettings& the_settings, const ComponentInputs& inputs);
 
   std::vector<double> masses() const override;
@@ -29,7 +29,7 @@ class RigidBody final : public AffineCollider {
   double mass_ = 0;  ///< [kg]
 };
 
-/// Builds a collider with a density. Errors: input and file, with the place in the scene and the mesh file.
-std::shared_ptr<Component> build_rigid_body(const ColliderSettings& settings, const ComponentInputs& inputs);
+struct ColliderKind;
+extern const ColliderKind rigid_kind;
 
 }  // namespace muslin

@@ -14,7 +14,10 @@ namespace {
 class ShellBuilder {
  public:
   ShellBuilder(const BodySettings& settings, const ComponentInputs& inputs)
-      : settings_(settings), inputs_(inputs), file_(inputs.files.resolve(settings.mesh).string()) {
+      : settings_(settings),
+        own_(settings.own.as<ShellBodySettings>()),
+        inputs_(inputs),
+        file_(inputs.files.resolve(settings.mesh).string()) {
     body_.settings = settings;
   }
 
@@ -32,10 +35,10 @@ class ShellBuilder {
   /// The stress-free shape: the mesh as it was modelled (scaled, not turned), or another of the same
   /// polygons.
   Mesh rest_mesh() {
-    if (settings_.rest_mesh.empty()) return body_.mesh;
-    const std::string rest_file = inputs_.files.resolve(settings_.rest_mesh).string();
-    return at_place(settings_.rest_mesh_place, rest_file, [&] {
-      Mesh rest = inputs_.files.mesh(settings_.rest_mesh).mesh;
+    if (own_.rest_mesh.empty()) return body_.mesh;
+    const std::string rest_file = inputs_.files.resolve(own_.rest_mesh).string();
+    return at_place(own_.rest_mesh_place, rest_file, [&] {
+      Mesh rest = inputs_.files.mesh(own_.rest_mesh).mesh;
       require_usable(rest, rest_file);
       if (rest.vertex_count() != body_.mesh.vertex_count() || rest.face_offsets != body_.mesh.face_offsets ||
           rest.face_vertices != body_.mesh.face_vertices) {
@@ -53,8 +56,8 @@ class ShellBuilder {
 
   void make_shell(const Mesh& rest) {
     inputs_.progress.at(0.5, "shell");
-    Weave weave{settings_.warp};
-    if (weave.warp && settings_.rest_mesh.empty()) {
+    Weave weave{own_.warp};
+    if (weave.warp && own_.rest_mesh.empty()) {
       // The direction refers to the mesh as modelled.
       weave.warp = placement(Vec3::Zero(), settings_.rotate, Vec3::Ones()) * *weave.warp;
     }
@@ -89,6 +92,7 @@ class ShellBuilder {
   }
 
   const BodySettings& settings_;
+  const ShellBodySettings& own_;
   const ComponentInputs& inputs_;
   std::string file_;
   std::shared_ptr<ShellBody> built_ = std::make_shared<ShellBody>();

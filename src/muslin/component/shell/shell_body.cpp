@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "muslin/component/body_mesh.hpp"
+#include "muslin/component/description.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/hash.hpp"
@@ -70,7 +71,7 @@ std::optional<ContactPart> ShellBody::contact_part() const {
   part.size = mesh.bounds().sizes().maxCoeff();
   part.body.self_contact = settings.self_contact;
   part.body.friction = settings.friction;
-  part.body.radius = settings.shell_thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;
+  part.body.radius = own().thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;
   part.body.stiffness = contact_stiffness_share * std::sqrt(m.membrane_warp * m.membrane_weft);
   // A body without stretch resistance still needs contact to carry its weight.
   if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;
@@ -87,7 +88,7 @@ std::uint64_t ShellBody::shape_hash(std::uint64_t seed) const {
 
 std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
   const ShellMaterial& m = *settings.material.shell;
-  return hash_bytes(&m, sizeof m, settings_hash(settings, seed));
+  return hash_bytes(&m, sizeof m, muslin::material_hash(settings.material, 0, seed));
 }
 
 void ShellBody::write_stages(const std::filesystem::path& folder, const Progress& /*progress*/) const {
@@ -105,19 +106,12 @@ std::string ShellBody::description_json() const {
   json["hinges"] = s.hinges;
   json["area"] = shell.area;
   json["mean_edge"] = shell.mean_edge;
-  if (settings.stretch_limit) json["stretch_limit"] = *settings.stretch_limit;
-  json["warp"] = settings.warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
+  if (own().stretch_limit) json["stretch_limit"] = *own().stretch_limit;
+  json["warp"] = own().warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
   json["material"] = settings.material.name;
-  json["vertices"] = s.vertices;
-  json["voxels"] = s.voxels;
-  json["tetrahedra"] = s.tetrahedra;
-  json["springs"] = {
-      {"edge", s.springs[0]}, {"face_diagonal", s.springs[1]}, {"body_diagonal", s.springs[2]}};
-  json["mass"] = s.mass;
-  json["coverage"] = s.coverage;
-  json["stable_step"] =
-      std::isfinite(s.stable_step) ? nlohmann::ordered_json(s.stable_step) : nlohmann::ordered_json(nullptr);
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  append_counts(json, s);
+  append_stable_step(json, s);
+  return to_line(json);
 }
 
 std::string ShellBody::description() const {
@@ -133,8 +127,8 @@ std::string ShellBody::description() const {
       "  stiffness   warp {:.4g}, weft {:.4g}, shear {:.4g} N/m; bending {:.3g}, {:.3g}, bias "
       "{:.3g} N·m\n",
       m.membrane_warp, m.membrane_weft, m.membrane_shear, m.bending_warp, m.bending_weft, m.bending_bias);
-  if (settings.stretch_limit)
-    text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *settings.stretch_limit);
+  if (own().stretch_limit)
+    text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *own().stretch_limit);
   return text;
 }
 

@@ -14,6 +14,7 @@
 
 #include "muslin/component/body_settings.hpp"
 #include "muslin/component/component.hpp"
+#include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
@@ -31,7 +32,7 @@ class ShellBody final : public Component {
   double spacing() const override { return shell.mean_edge; }
   std::vector<int> parts() const override;
   double max_stretch(ConstVectors x) const override { return muslin::max_stretch(shell, x); }
-  std::optional<double> stretch_limit() const override { return settings.stretch_limit; }
+  std::optional<double> stretch_limit() const override { return own().stretch_limit; }
 
   std::optional<ContactPart> contact_part() const override;
 
@@ -41,9 +42,11 @@ class ShellBody final : public Component {
   void write_stages(const std::filesystem::path& folder, const Progress& progress) const override;
   std::string description_json() const override;
   std::string description() const override;
+
+  const ShellBodySettings& own() const { return settings.own.as<ShellBodySettings>(); }
 };
 
-/// Builds a body of BodyModel::shell. Errors: input and file, with the place in the scene and the mesh file.
+/// Builds a shell. Errors: input and file, with the place in the scene and the mesh file.
 std::shared_ptr<Component> build_shell_body(const BodySettings& settings, const ComponentInputs& inputs);
 
 /// Returns the component as a shell, null if it is of another kind. Only for features that shells alone have.

@@ -26,8 +26,8 @@ class ShellTerms {
     add("membrane", membrane);
     add_blocks(*membrane, 3);
     // The limit has no stiffness at rest, so that the stable step does not know it.
-    if (body_.settings.stretch_limit) {
-      const double limit = *body_.settings.stretch_limit;
+    if (body_.own().stretch_limit) {
+      const double limit = *body_.own().stretch_limit;
       const double stiffness = stretch_limit_stiffness(std::max(m.membrane_warp, m.membrane_weft),
                                                        body_.statistics.mass, body_.shell.mean_edge, limit);
       add("stretch limit", std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness, pattern));

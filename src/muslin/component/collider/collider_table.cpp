@@ -1,8 +1,12 @@
-#include "muslin/scene/collider_table.hpp"
+#include "muslin/component/collider/collider_table.hpp"
 
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "muslin/component/component_keys.hpp"
+#include "muslin/component/kinds.hpp"
 #include "muslin/geometry/inspect.hpp"
-#include "muslin/scene/common_keys.hpp"
-#include "muslin/scene/names.hpp"
 #include "muslin/schema/declare.hpp"
 
 namespace muslin {
@@ -51,35 +55,11 @@ Key points_key() {
   return key;
 }
 
-/// The keys of shapes that may have mass: all but the plane.
-std::vector<Key> mass_keys() {
-  const char* remedy = "give a `density` to let it move by itself, or `keyframes`";
-  const auto is_free = [](const Collider& collider) { return collider.is_free(); };
-  return {
-      schema::number("density", &Collider::density)
-          .unit("kg/m³")
-          .range({1e-6, 1e9, false})
-          .excludes("sequence", "`density` stands beside `sequence`, which says how it moves")
-          .excludes("keyframes", "`density` makes a body that moves by itself, `keyframes` say how it moves",
-                    "keep one of them; a [[pin]] holds or moves a body for a while")
-          .means("makes it a rigid body of this density; a mesh must be closed. Without it gravity and other "
-                 "forces do not act on it"),
-      schema::vector("velocity", &Collider::velocity)
-          .unit("m/s")
-          .needs("density", remedy)
-          .shown_if<Collider>(is_free)
-          .means("at the start; only with a density"),
-      schema::vector("angular_velocity", &Collider::angular_velocity)
-          .unit("degrees/s")
-          .needs("density", remedy)
-          .shown_if<Collider>(is_free)
-          .means("at the start, about its centre of mass, along the axis of rotation; only with a density")};
-}
-
+/// The keys of a shape: its own, then those of each kind of component that it may be.
 schema::Table shape_table(Shape shape, std::vector<Key> keys) {
-  if (shape != Shape::plane)
-    for (Key& key : mass_keys()) keys.push_back(std::move(key));
-  return schema::table_of<Collider>(name_of(collider_shape_names(), shape), std::move(keys));
+  for (const ColliderKind& kind : collider_kinds())
+    for (Key& key : kind.keys(shape)) keys.push_back(std::move(key));
+  return schema::table_of<Collider>(name_of(shape), std::move(keys));
 }
 
 const schema::Table& plane_table() {
@@ -128,31 +108,11 @@ const schema::Table& box_table() {
 const schema::Table& mesh_table() {
   static const schema::Table table = [] {
     schema::Table mesh = shape_table(
-        Shape::mesh,
-        {schema::path("mesh", &Collider::mesh, &Collider::mesh_place)
-             .required()
-             .means("the same formats as for a body; open meshes stop bodies from both sides"),
-         schema::vector("translate", &Collider::translate).unit("m").means("as of a body"),
-         rotate_key("as of a body"), scale_key(&Collider::scale),
-         schema::path("sequence", &Collider::sequence, &Collider::sequence_place)
-             .means(
-                 "motion, in place of `keyframes`: a file with the position of every vertex of the mesh per "
-                 "frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. `translate`, `rotate` and "
-                 "`scale` "
-                 "apply to it as to the mesh"),
-         schema::number("frame_rate", &Collider::frame_rate)
-             .unit("1/s")
-             .range({1e-6, 1e6, false})
-             .otherwise("the scene's")
-             .needs("sequence", "take it out")
-             .means("frames per second of the sequence; not for an `.mdd`, which stores its own frame times"),
-         schema::number("start", &Collider::start)
-             .unit("s")
-             .range({-1e9, 1e9, false})
-             .otherwise("as the file says, or 0")
-             .needs("sequence", "take it out")
-             .means("time of the first sample; the collider stands still before the first and after the last "
-                    "sample")});
+        Shape::mesh, {schema::path("mesh", &Collider::mesh, &Collider::mesh_place)
+                          .required()
+                          .means("the same formats as for a body; open meshes stop bodies from both sides"),
+                      schema::vector("translate", &Collider::translate).unit("m").means("as of a body"),
+                      rotate_key("as of a body"), scale_key(&Collider::scale)});
     schema::add_rule<Collider>(mesh, [](const Collider& collider, const Subject& subject) {
       if (collider.frame_rate && collider.sequence.ends_with(".mdd"))
         throw subject.error("frame_rate", "an .mdd stores its own frame times", "take `frame_rate` out");
@@ -163,11 +123,18 @@ const schema::Table& mesh_table() {
 }
 
 schema::Table declared() {
+  const std::vector<schema::Variant> variants = {{name_of(Shape::plane), "", plane_table},
+                                                 {name_of(Shape::sphere), "", sphere_table},
+                                                 {name_of(Shape::capsule), "", capsule_table},
+                                                 {name_of(Shape::box), "", box_table},
+                                                 {name_of(Shape::mesh), "", mesh_table}};
+  std::vector<std::string> shapes;
+  for (const schema::Variant& variant : variants) shapes.push_back(variant.word);
   schema::Table table = schema::table_of<Collider>(
       "[[collider]]",
       {name_key<Collider>("`sphere0`, `box1`, …, the mesh's file name")
            .means("different for each body and collider"),
-       schema::word("shape", &Collider::shape, collider_shape_names())
+       schema::word("shape", &Collider::shape, shapes)
            .required()
            .means("`\"plane\"`, `\"sphere\"`, `\"capsule\"`, `\"box\"` or `\"mesh\"`"),
        schema::vector("pivot", &Collider::pivot)
@@ -175,7 +142,7 @@ schema::Table declared() {
            .otherwise("middle of the shape; `center` of a plane")
            .needs("keyframes", "take it out")
            .means("point about which `rotate` of the keyframes turns, before `translate`"),
-       schema::within(
+       schema::within<Collider>(
            &Collider::motion,
            motion_key()
                .excludes("sequence", "`keyframes` stands beside `sequence`, which says how it moves")
@@ -190,12 +157,7 @@ schema::Table declared() {
            .may_change_on_resume()
            .otherwise("grey")
            .means("colour in pictures")});
-  schema::choose(table, "shape", &Collider::shape,
-                 {{"plane", "", plane_table},
-                  {"sphere", "", sphere_table},
-                  {"capsule", "", capsule_table},
-                  {"box", "", box_table},
-                  {"mesh", "", mesh_table}});
+  schema::choose(table, "shape", &Collider::shape, variants);
   for (Key& key : table.keys) {
     if (key.name == "keyframes")  // a rigid body has none
       key.shown = [](const void* s) { return !static_cast<const Collider*>(s)->is_free(); };
@@ -208,14 +170,6 @@ schema::Table declared() {
 const schema::Table& collider_table() {
   static const schema::Table table = declared();
   return table;
-}
-
-void finish_collider(const TomlTable& table, std::size_t index, Collider& collider, const Scene& scene) {
-  const std::string stem = std::filesystem::path(collider.mesh).stem().string();
-  const std::string& shape = name_of(collider_shape_names(), collider.shape);
-  complete_name(table, stem.empty() ? fmt::format("{}{}", shape, index) : stem, collider.name);
-  require_new_name(table, scene.bodies, "body", "collider", collider.name);
-  require_new_name(table, scene.colliders, "collider", "collider", collider.name);
 }
 
 }  // namespace muslin

@@ -1,0 +1,21 @@
+// ShellBodySettings holds what a scene says of a [[body]] that is a shell.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "muslin/core/error.hpp"
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+struct ShellBodySettings {
+  std::optional<double> thickness;  ///< as contact sees it [m]; default: see shell_body.hpp
+  std::string rest_mesh;            ///< path of the shape without stress; empty: the mesh
+  Place rest_mesh_place;
+  /// Direction of the warp threads; default: along the texture's u, or the longest side.
+  std::optional<Vec3> warp;
+  std::optional<double> stretch_limit;  ///< of length to rest length in every direction; default: none
+};
+
+}  // namespace muslin

@@ -1,0 +1,10 @@
+// The shell as a kind of [[body]].
+#pragma once
+
+#include "muslin/component/body_kind.hpp"
+
+namespace muslin {
+
+extern const BodyKind shell_kind;
+
+}  // namespace muslin

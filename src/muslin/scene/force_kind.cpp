@@ -1,0 +1,64 @@
+#include "muslin/scene/force_kind.hpp"
+
+#include "muslin/scene/common_keys.hpp"
+
+namespace muslin {
+
+using schema::Key;
+
+schema::Declaration force_body_key(const char* otherwise, const char* meaning) {
+  return schema::text("body", &ForceSettings::body)
+      .otherwise(otherwise)
+      .means(meaning)
+      .shown_as<ForceSettings>([](const ForceSettings& force) {
+        return force.body.empty() ? schema::null() : schema::words(force.body);
+      });
+}
+
+schema::Table force_keyframe_table(const char* kind, const char* key, const char* unit) {
+  return schema::table_of<Keyed::Key>(
+      fmt::format("keyframes of {}", kind),
+      {schema::number("time", &Keyed::Key::time).unit("s").required().means("after that of the one before"),
+       schema::vector("value", &Keyed::Key::value)
+           .unit(unit)
+           .required()
+           .means(fmt::format("`{}` at that time", key))});
+}
+
+void add_value_keys(schema::Table& table, const ForceValue& value) {
+  Key constant = schema::custom<ForceSettings>(
+                     value.key, {schema::Type::vector},
+                     [](const Key& key, const TomlTable& given, ForceSettings& force) {
+                       force.value.keys = {{0, given.vector(key.name, key.unit)}};
+                     },
+                     [](const Key& key, const ForceSettings& force, TomlValue& out) {
+                       if (force.value.keys.size() == 1)
+                         schema::append(out, key.name, schema::vector_value(force.value.keys.front().value));
+                     })
+                     .unit(value.unit)
+                     .means(value.meaning)
+                     .excludes("keyframes",
+                               fmt::format("`{}` is given twice, as constant and by `keyframes`", value.key));
+  if (value.otherwise != nullptr) {
+    constant.otherwise = value.otherwise;
+  } else {
+    constant.required = true;
+    constant.unless = {"keyframes"};
+  }
+  table.keys.push_back(constant);
+  table.keys.push_back(schema::within<ForceSettings>(
+      &ForceSettings::value,
+      schema::keyframes("keyframes", &Keyed::keys, value.keyframes)
+          .shown_if<Keyed>([](const Keyed& keyed) { return keyed.keys.size() != 1; })
+          .otherwise("none")
+          .means("the value over time in place of a constant: a list of tables, linear "
+                 "between them; times ascend")));
+  for (Key& key : window_keys(&ForceSettings::from, &ForceSettings::until, "time when it begins to act",
+                              "time when it ends, after `from`", "for ever"))
+    table.keys.push_back(key);
+  schema::add_rule<ForceSettings>(table, [](const ForceSettings& force, const schema::Subject& subject) {
+    if (force.value.keys.empty()) throw subject.error("", "it has no value", "give at least one key");
+  });
+}
+
+}  // namespace muslin

@@ -1,0 +1,28 @@
+// OwnSettings holds the settings of one kind among several, of a type that only the kind knows.
+#pragma once
+
+#include <any>
+
+namespace muslin {
+
+class OwnSettings {
+ public:
+  /// Returns those of type T, with its defaults where there are none or those of another type.
+  template <class T>
+  const T& as() const {
+    static const T defaults;
+    const T* own = std::any_cast<T>(&value_);
+    return own != nullptr ? *own : defaults;
+  }
+  /// To change them; those of another type are lost.
+  template <class T>
+  T& as() {
+    T* own = std::any_cast<T>(&value_);
+    return own != nullptr ? *own : value_.emplace<T>();
+  }
+
+ private:
+  std::any value_;
+};
+
+}  // namespace muslin
