@@ -1,4 +1,4 @@
-// Every pair of law and stencil passes the same battery: one line a pair at the end.
+// Every pair of law and stencil passes the same battery: one line a pair at the end, and all laws of solids.
 #include "muslin/energy/elements.hpp"
 
 #include <functional>
@@ -8,12 +8,13 @@
 #include "support/linearized_product.hpp"
 #include "support/potential_battery.hpp"
 #include "support/sheet.hpp"
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "muslin/energy/membrane_energy.hpp"
-#include "muslin/energy/neo_hookean_energy.hpp"
 #include "muslin/energy/plastic_hinges.hpp"
 #include "muslin/energy/shell_bending.hpp"
+#include "muslin/energy/solid_laws.hpp"
 #include "muslin/energy/stretch_limit.hpp"
 
 namespace muslin {
@@ -100,17 +101,27 @@ Case plastic_hinges() {
   return c;
 }
 
-Case neo_hookean(double poisson) {
+Case solid(const SolidLaw& law, double poisson) {
   Lattice lattice = test::box_lattice({3, 2, 2});
   lattice.width = 0.1;
   for (std::size_t v = 0; v < lattice.fill.size(); ++v) lattice.fill[v] = 0.5 + 0.04 * static_cast<double>(v);
   std::vector<Vec3> rest;
   for (std::size_t v = 0; v < lattice.vertex_count(); ++v) rest.push_back(lattice.rest_position(v));
-  Case c{std::make_shared<NeoHookeanEnergy>(lattice, SolidModuli{3e4, poisson}, tetrahedron_pattern(lattice)),
+  Case c{law.make(lattice, SolidModuli{3e4, poisson}, tetrahedron_pattern(lattice)),
          rest,
          {mapped(rest, scaled(1.3, 0.9, 1.1), 0.01), mapped(rest, scaled(0.6, 0.8, 0.7), 0.01),
           mapped(rest, scaled(1, -0.5, 1), 0.02)}};
   return c;
+}
+
+/// Every law of solids, of a usual Poisson's ratio and near ½.
+std::vector<Pair> solids() {
+  std::vector<Pair> pairs;
+  for (const SolidLaw& law : solid_laws())
+    for (const int percent : {30, 49})
+      pairs.push_back({fmt::format("{}_of_{}_percent", law.name, percent),
+                       [&law, percent] { return solid(law, percent / 100.0); }});
+  return pairs;
 }
 
 class ElementsBattery : public testing::TestWithParam<Pair> {};
@@ -189,9 +200,10 @@ INSTANTIATE_TEST_SUITE_P(Pairs, ElementsBattery,
                          testing::Values(Pair{"MembraneOnTriangles", membrane},
                                          Pair{"MembraneOfManyFabricsOnTriangles", membrane_of_many_fabrics},
                                          Pair{"StretchLimitOnTriangles", stretch_limit},
-                                         Pair{"ShellBending", bending}, Pair{"PlasticHinges", plastic_hinges},
-                                         Pair{"NeoHookeanOnTetrahedra", [] { return neo_hookean(0.3); }},
-                                         Pair{"IncompressibleNeoHookean", [] { return neo_hookean(0.49); }}),
+                                         Pair{"ShellBending", bending},
+                                         Pair{"PlasticHinges", plastic_hinges}),
+                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Solids, ElementsBattery, testing::ValuesIn(solids()),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "muslin/material/lattice_moduli.hpp"
+#include "muslin/lattice/lattice_moduli.hpp"
 #include "muslin/material/material.hpp"
 
 namespace muslin {

@@ -20,7 +20,7 @@ const std::map<std::string, int> ranks = {
 
 bool allowed(const std::string& from, const std::string& to) {
   if (from == to || ranks.at(to) < ranks.at(from)) return true;
-  return to == "material" && (from == "energy" || from == "force");
+  return to == "energy" && from == "material";
 }
 
 TEST(Layering, FoldersIncludeOnlyLowerFolders) {

@@ -4,6 +4,7 @@
 #include "muslin/core/toml_table.hpp"
 #include "muslin/material/library.hpp"
 #include "muslin/material/material_table.hpp"
+#include "muslin/schema/declare.hpp"
 
 namespace muslin {
 namespace {
@@ -14,6 +15,44 @@ std::vector<MaterialNumber> numbers_in(const schema::Table& table, const TomlVal
     if (written.items[i].type != TomlValue::Type::string)
       numbers.push_back({written.keys[i], written.items[i].real, table.find(written.keys[i])->unit});
   return numbers;
+}
+
+void read_lattice(const schema::Key& key, const TomlTable& file, Material& material) {
+  const schema::Table& keys = lattice_material_table();
+  const TomlTable table = keys.open(*file.find(key.name), fmt::format("`{}` of {}", key.name, file.title()));
+  material.has_lattice = true;
+  keys.read(table, material);
+  if (material.youngs_modulus && material.has_springs())
+    throw table.error("youngs_modulus", "a material file has springs by their three moduli",
+                      "give these, or law = \"neo_hookean\"");
+}
+
+void read_reference(const schema::Key& key, const TomlTable& file, Material& material) {
+  const TomlValue& reference = *file.find(key.name);
+  if (reference.type != TomlValue::Type::table)
+    throw file.error(key.name, "`reference` is not a table", "write [reference]");
+  for (std::size_t i = 0; i < reference.items.size(); ++i) {
+    const TomlValue& value = reference.items[i];
+    if (value.type == TomlValue::Type::string) continue;  // a remark
+    material.reference.emplace_back(reference.keys[i],
+                                    to_number(value, "`" + reference.keys[i] + "` of [reference]", ""));
+  }
+}
+
+/// A material file. The library writes none.
+const schema::Table& file_table() {
+  const auto unwritten = [](const schema::Key&, const Material&, TomlValue&) {};
+  static const schema::Table table = schema::table_of<Material>(
+      "material file",
+      {schema::text("name", &Material::name).otherwise("the file's name").means("name in messages"),
+       schema::text("description", &Material::description).means("what it is, in a sentence"),
+       schema::text("source", &Material::source).means("where its numbers come from"),
+       schema::custom<Material>("lattice", {schema::Type::table}, read_lattice, unwritten)
+           .means("its numbers as a lattice"),
+       schema::nested("shell", &Material::shell, shell_material_table).means("its numbers as a shell"),
+       schema::custom<Material>("reference", {schema::Type::table}, read_reference, unwritten)
+           .means("measured numbers of the real material, for information")});
+  return table;
 }
 
 }  // namespace
@@ -40,42 +79,15 @@ Material read_material(const std::filesystem::path& file) {
 
 Material parse_material(std::string_view text, const std::string& file) {
   const TomlValue root = parse_toml(text, file);
-  const TomlTable top(root, "the material file",
-                      {"name", "description", "source", "lattice", "shell", "reference"});
+  const TomlTable top = file_table().open(root, "the material file");
   Material material;
-  material.name = top.string("name", std::filesystem::path(file).stem().string());
-  material.description = top.string("description", "");
-  material.source = top.string("source", "");
-  const TomlValue* shell = top.find("shell");
-  const TomlValue* lattice = top.find("lattice");
-  if (shell != nullptr) {
-    const schema::Table& keys = shell_material_table();
-    keys.read(keys.open(*shell, "`shell` of the material file"), material.shell.emplace());
-  }
-  material.has_lattice = lattice != nullptr;
+  material.name = std::filesystem::path(file).stem().string();
+  material.has_lattice = false;
+  file_table().read(top, material);
   if (!material.has_lattice && !material.shell) {
     throw Error(
         ErrorKind::input, Place{file, 0, 0}, "the material file has no table [lattice] or [shell]",
         "add [lattice] with density, edge_modulus, … or [shell] with areal_density, membrane_warp, …");
-  }
-  if (lattice != nullptr) {
-    const schema::Table& keys = lattice_material_table();
-    const TomlTable table = keys.open(*lattice, "`lattice` of the material file");
-    keys.read(table, material);
-    if (material.youngs_modulus && material.law == LatticeLaw::springs)
-      throw table.error("youngs_modulus", "a material file defines springs by their three moduli",
-                        "give these, or law = \"neo_hookean\"");
-  }
-  if (const TomlValue* reference = top.find("reference")) {
-    if (reference->type != TomlValue::Type::table) {
-      throw top.error("reference", "`reference` is not a table", "write [reference]");
-    }
-    for (std::size_t i = 0; i < reference->items.size(); ++i) {
-      const TomlValue& value = reference->items[i];
-      if (value.type == TomlValue::Type::string) continue;  // a remark
-      material.reference.emplace_back(reference->keys[i],
-                                      to_number(value, "`" + reference->keys[i] + "` of [reference]", ""));
-    }
   }
   return material;
 }

@@ -13,12 +13,6 @@
 
 namespace muslin {
 
-/// The elements that fill the voxels of a lattice.
-enum class LatticeLaw {
-  springs,
-  neo_hookean,  ///< tetrahedra of a compressible Neo-Hookean solid
-};
-
 /// The quantities of a lattice, whose spring constants are modulus × voxel width, and those of a shell. A
 /// material has at least one of the two.
 struct Material {
@@ -31,12 +25,14 @@ struct Material {
   double face_diagonal_modulus = 0;  ///< [N/m²]
   double body_diagonal_modulus = 0;  ///< [N/m²]
   double volume_modulus = 0;         ///< stiffness of tetrahedral volume conservation [N/m²], 0: off
-  LatticeLaw law = LatticeLaw::springs;
+  std::string law = "springs";  ///< of what fills a lattice: springs, or a solid of energy/solid_laws.hpp
   std::optional<double> youngs_modulus;  ///< E of a solid [N/m²]
   double poisson = 0.3;                  ///< ν of a solid
   double mass_damping = 0;           ///< Rayleigh α [1/s]
   double stiffness_damping = 0;      ///< Rayleigh β [s]
   std::optional<ShellMaterial> shell;
+
+  bool has_springs() const { return law == "springs"; }
   /// Measured numbers of the real material, for information only.
   std::vector<std::pair<std::string, double>> reference;
 };

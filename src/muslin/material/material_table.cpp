@@ -1,7 +1,11 @@
 #include "muslin/material/material_table.hpp"
 
+#include <string>
+#include <vector>
+
 #include <fmt/format.h>
 
+#include "muslin/energy/solid_laws.hpp"
 #include "muslin/material/material.hpp"
 #include "muslin/schema/declare.hpp"
 
@@ -23,7 +27,21 @@ Declaration spring_modulus(const char* name, double Material::* member, const ch
       .excludes("youngs_modulus", fmt::format("`{}` stands beside `youngs_modulus`, which decides it", name));
 }
 
-bool is_solid(const Material& material) { return material.law == LatticeLaw::neo_hookean; }
+bool is_solid(const Material& material) { return !material.has_springs(); }
+
+/// The key `law`: springs, or one of the solids.
+Declaration law_key() {
+  std::vector<std::string> words = {"springs"};
+  std::string meaning;
+  for (const SolidLaw& law : solid_laws()) {
+    words.emplace_back(law.name);
+    meaning += fmt::format("{}`{}`: {}", meaning.empty() ? "" : " · ", law.name, law.meaning);
+  }
+  return schema::word("law", &Material::law, words)
+      .needs("youngs_modulus", "give the modulus of the solid")
+      .shown_if<Material>(is_solid)
+      .means(meaning);
+}
 
 }  // namespace
 
@@ -54,10 +72,7 @@ const schema::Table& lattice_material_table() {
            .unit("s")
            .range(damping)
            .means("Rayleigh's β: slows stretching only"),
-       schema::word("law", &Material::law, {"springs", "neo_hookean"})
-           .needs("youngs_modulus", "give the modulus of the solid")
-           .shown_if<Material>(is_solid)
-           .means("`neo_hookean`: a solid of tetrahedra in place of springs, with a stated E and ν"),
+       law_key(),
        schema::number("youngs_modulus", &Material::youngs_modulus)
            .unit("N/m²")
            .range({0, 1e15, true})

@@ -9,7 +9,7 @@
 #include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/component/solid.hpp"
 #include "muslin/energy/element_energy.hpp"
-#include "muslin/energy/neo_hookean_energy.hpp"
+#include "muslin/energy/solid_laws.hpp"
 #include "muslin/energy/spring_damping.hpp"
 #include "muslin/energy/spring_energy.hpp"
 #include "muslin/energy/volume_energy.hpp"
@@ -139,10 +139,9 @@ class LatticeBuilder {
     Lattice lattice = body_.lattice;
     lattice.fill = body_.voxel_shares();
     std::shared_ptr<const Load> damping;
-    if (material.law == LatticeLaw::neo_hookean) {
-      const auto solid =
-          std::make_shared<NeoHookeanEnergy>(lattice, SolidModuli{*material.youngs_modulus, material.poisson},
-                                             tetrahedron_pattern(body_.lattice));
+    if (const SolidLaw* law = find_solid_law(material.law)) {
+      const auto solid = law->make(lattice, SolidModuli{*material.youngs_modulus, material.poisson},
+                                   tetrahedron_pattern(body_.lattice));
       body_.potentials.push_back({"solid", EnergyRole::elastic, solid});
       add_blocks(*solid, 4);
       damping = std::make_shared<ElementDamping>(solid, material.stiffness_damping);

@@ -10,7 +10,7 @@
 #include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/geometry/edge_length.hpp"
-#include "muslin/material/lattice_moduli.hpp"
+#include "muslin/lattice/lattice_moduli.hpp"
 
 namespace muslin {
 namespace {

@@ -7,7 +7,7 @@
 #include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/component/lattice/lattice_body_settings.hpp"
 #include "muslin/geometry/inspect.hpp"
-#include "muslin/material/lattice_moduli.hpp"
+#include "muslin/lattice/lattice_moduli.hpp"
 #include "muslin/material/material_table.hpp"
 
 namespace muslin {
@@ -87,7 +87,7 @@ Material read_table(const TomlTable& table, const BodySettings& body, const std:
   if (table.has("base")) input.material = base_material(material_use, table, folder);
   if (table.has("law")) drop_springs(input.material);
   input_table().read(table, input);
-  if (input.material.youngs_modulus && input.material.law == LatticeLaw::springs)
+  if (input.material.youngs_modulus && input.material.has_springs())
     set_moduli(table, input.shear_modulus, body.own.as<Own>().bracing, input.material);
   return input.material;
 }
@@ -147,7 +147,7 @@ void finish(const TomlTable& table, const std::filesystem::path& folder, BodySet
   if (table.has("threshold") && body.own.as<Own>().lattice.rule != VoxelRule::threshold)
     warnings.push_back(table.title() + ": `threshold` has no effect without `voxels = \"threshold\"`");
   const Material& material = body.material;
-  if (material.law == LatticeLaw::springs && material.face_diagonal_modulus == 0 && material.body_diagonal_modulus == 0) {
+  if (material.has_springs() && material.face_diagonal_modulus == 0 && material.body_diagonal_modulus == 0) {
     warnings.push_back(table.title() +
                        ": a material without stiffness along diagonals does not resist shear");
   }

@@ -1,6 +1,6 @@
 // The moduli computed from spring directions are those that a block of actual springs shows when it is
 // loaded: each test below builds the springs one by one, solves for equilibrium, and measures.
-#include "muslin/material/lattice_moduli.hpp"
+#include "muslin/lattice/lattice_moduli.hpp"
 
 #include <cmath>
 #include <functional>

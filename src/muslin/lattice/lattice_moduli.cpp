@@ -1,4 +1,4 @@
-#include "muslin/material/lattice_moduli.hpp"
+#include "muslin/lattice/lattice_moduli.hpp"
 
 #include <algorithm>
 #include <array>

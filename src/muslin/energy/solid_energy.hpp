@@ -1,0 +1,88 @@
+// SolidEnergy is the elastic energy of the tetrahedra of a lattice, six a voxel, with a law of the measures
+// I_C and J of tetrahedron_stencil.hpp:
+//
+//   W = Σ f V ψ(F),   V = width³/6
+//
+// f the share of the voxel that the solid fills. The tetrahedra are Kuhn's (lattice/springs.hpp): their edges
+// are the seven directions of the springs, so the stiffness has blocks between the same vertices, and springs
+// of the same Young's modulus stand in for it in the preconditioner. Linear tetrahedra are too stiff in
+// bending for coarse lattices and for Poisson's ratios near ½; docs/theory/solids.md has the errors.
+//
+// solid_laws.hpp lists the laws. A law is instantiated in one source file, which includes
+// elements_methods.hpp.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "muslin/energy/elements.hpp"
+#include "muslin/energy/tetrahedron_stencil.hpp"
+#include "muslin/lattice/lattice.hpp"
+#include "muslin/potential/spring_network.hpp"
+
+namespace muslin {
+
+/// Young's modulus E > 0 [Pa], −1 < ν < ½.
+struct SolidModuli {
+  double youngs_modulus = 0;
+  double poisson = 0;
+};
+/// Throws Error(usage) if a modulus is out of the range of the law's parameters E and ν.
+void require_moduli(const SolidModuli& moduli, std::span<const LawParameter> parameters);
+
+/// Returns the pairs of vertices in a tetrahedron of the lattice.
+std::shared_ptr<const SymmetricPattern> tetrahedron_pattern(const Lattice& lattice);
+
+/// The tetrahedra of a lattice, weighted by its fill.
+struct SolidElements {
+  explicit SolidElements(const Lattice& lattice);
+  std::shared_ptr<const ElementSlabs<4>> slabs;
+  TetrahedronStencil stencil;
+};
+
+/// Springs that stand in for a solid in the preconditioner.
+class SolidSprings {
+ public:
+  SolidSprings(const Lattice& lattice, double youngs_modulus);
+  void linearize(ConstVectors x, const std::shared_ptr<const SymmetricPattern>& pattern, HessianSink& into,
+                 std::size_t first) const;
+
+ private:
+  std::shared_ptr<const SpringNetwork> network_;
+  std::vector<double> stiffness_;  // by kind [N/m]
+};
+
+template <class Law>
+class SolidEnergy : public Elements<TetrahedronStencil, Law> {
+  using Base = Elements<TetrahedronStencil, Law>;
+
+ public:
+  /// `pattern` is the lattice's tetrahedron_pattern, or null. Errors: usage, if a modulus is out of its
+  /// range.
+  SolidEnergy(const Lattice& lattice, const SolidModuli& moduli,
+              std::shared_ptr<const SymmetricPattern> pattern = nullptr)
+      : SolidEnergy(SolidElements(lattice), lattice, moduli, std::move(pattern)) {}
+
+  void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override {
+    Base::linearize(x, into, first);
+    if (springs_) springs_->linearize(x, this->pattern(), into, first);
+  }
+
+ private:
+  SolidEnergy(const SolidElements& elements, const Lattice& lattice, const SolidModuli& moduli,
+              std::shared_ptr<const SymmetricPattern> pattern)
+      : Base(elements.slabs, elements.stencil, constants(*elements.slabs, moduli), std::move(pattern)) {
+    if (this->pattern()) springs_ = std::make_shared<const SolidSprings>(lattice, moduli.youngs_modulus);
+  }
+  static LawConstants<Law> constants(const ElementSlabs<4>& slabs, const SolidModuli& moduli) {
+    require_moduli(moduli, Law::parameters);
+    const auto same = Law::constants(moduli.youngs_modulus, moduli.poisson);
+    return LawConstants<Law>(slabs, [same](std::size_t) { return same; });
+  }
+
+  std::shared_ptr<const SolidSprings> springs_;
+};
+
+}  // namespace muslin
