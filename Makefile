@@ -55,7 +55,7 @@ fuzz:             ## every fuzzer for FUZZ_SECONDS each; inputs that fail are le
 	cmake --build build/fuzz -j $(JOBS) --target fuzzers
 	tests/fuzz/run build/fuzz/tests/fuzz $(FUZZ_SECONDS)
 
-tidy:             ## clang-tidy over the sources that have changed since TIDY_SINCE, or all
+tidy:             ## clang-tidy over the lines that have changed since TIDY_SINCE, or all
 	tools/tidy $(TIDY_SINCE)
 
 format:
