@@ -23,13 +23,13 @@ double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
 }
 
 /// A shape of `where`: how far a point lies outside of it [m], 0 or less inside.
-struct Shape {
+struct ChosenShape {
   std::string name;
   std::function<double(const Vec3&)> outside;
 };
 
-std::vector<Shape> shapes_of(const Selection& where, double spacing) {
-  std::vector<Shape> shapes;
+std::vector<ChosenShape> shapes_of(const Selection& where, double spacing) {
+  std::vector<ChosenShape> shapes;
   if (where.box) {
     const Box box(where.box->min, where.box->max);
     shapes.push_back({"box", [box](const Vec3& x) { return box.exteriorDistance(x); }});
@@ -88,7 +88,7 @@ class Selector {
     parallel_for(kept_.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const Vec3 x = position(v);
-        for (const Shape& shape : shapes_) kept_[v] &= shape.outside(x) <= slack_;
+        for (const ChosenShape& shape : shapes_) kept_[v] &= shape.outside(x) <= slack_;
       }
     });
     if (std::find(kept_.begin(), kept_.end(), 1) == kept_.end()) fail(of_group);
@@ -144,11 +144,11 @@ class Selector {
   [[noreturn]] void fail(const std::vector<std::uint8_t>& among) const {
     const Least least = least_over(among, [&](const Vec3& x) {
       double worst = 0;
-      for (const Shape& shape : shapes_) worst = std::max(worst, shape.outside(x));
+      for (const ChosenShape& shape : shapes_) worst = std::max(worst, shape.outside(x));
       return worst;
     });
     std::string names;
-    for (const Shape& shape : shapes_) names += (names.empty() ? "`" : " and `") + shape.name + "`";
+    for (const ChosenShape& shape : shapes_) names += (names.empty() ? "`" : " and `") + shape.name + "`";
     const Vec3 x = position(least.vertex);
     throw Error(ErrorKind::input, where_.place,
                 fmt::format("{}: no vertex of body `{}` lies within {}", what_, body_.name, names),
@@ -159,7 +159,7 @@ class Selector {
   const Component& body_;
   const Selection& where_;
   const std::string& what_;
-  std::vector<Shape> shapes_;
+  std::vector<ChosenShape> shapes_;
   double slack_;
   std::vector<std::uint8_t> kept_;
 };

@@ -12,7 +12,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 256;
+constexpr std::size_t candidate_grain = 256;
 
 /// Shares of a rest distance that thickness and range may take.
 constexpr double rest_thickness = 0.5, rest_range = 0.4;
@@ -200,13 +200,14 @@ void ContactCandidates::renew(std::span<const std::uint8_t> moved, ConstVectors 
 
 /// Collects near pairs from those of the search and from planes.
 void ContactCandidates::add_near_pairs() {
-  const auto blocks = [](std::size_t count) { return (count + grain - 1) / grain; };
+  const auto blocks = [](std::size_t count) { return (count + candidate_grain - 1) / candidate_grain; };
   const std::size_t vertex_triangle = blocks(found_.vertex_triangle.size());
   std::vector<Near> parts(vertex_triangle + blocks(found_.edge_edge.size()));
   parallel_for(parts.size(), 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       const auto block = [](const auto& all, std::size_t k) {
-        return std::span(all).subspan(k * grain, std::min(grain, all.size() - k * grain));
+        return std::span(all).subspan(k * candidate_grain,
+                                      std::min(candidate_grain, all.size() - k * candidate_grain));
       };
       if (i < vertex_triangle) {
         add_near(PairKind::vertex_triangle, block(found_.vertex_triangle, i), parts[i]);

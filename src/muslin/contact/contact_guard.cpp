@@ -13,7 +13,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t guard_grain = 4096;
 /// Boxes of candidates are wider than the motion by this share of d̂.
 constexpr double margin_share = 0.5;
 /// If at most this share of the points leaves its boxes, only their candidates are updated.
@@ -138,7 +138,7 @@ void ContactGuard::measure(ConstVectors q) {
 template <class Inside>
 std::size_t ContactGuard::find_outside(const Inside& inside) {
   outside_.resize(x_.size());
-  return parallel_sum(x_.size(), grain, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(x_.size(), guard_grain, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
     std::size_t count = 0;
     for (std::size_t p = begin; p < end; ++p) {
       outside_[p] = inside(p, candidates_.boxes().end(p)) ? 0 : 1;
@@ -157,7 +157,7 @@ void ContactGuard::ensure_coverage(ConstVectors q, ConstVectors d) {
   reach_ = margin_ + pushed_share * push;
   model_->map->apply(q, x_);
   model_->map->apply(d, to_);
-  parallel_for(x_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(x_.size(), guard_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) to_[p] += x_[p];
   });
   if (memory_.begin.empty()) return find_candidates(x_, to_, reach_);

@@ -9,14 +9,15 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t hessian_grain = 1024;
 
 }  // namespace
 
 ContactHessian::ContactHessian(const SurfaceMap& map, const std::vector<ContactRow>& rows)
     : vertex_count_(map.vertex_count()), rows_(rows.size()), offsets_(rows.size() + 1, 0) {
   weights_ = parallel_collect<StepGuard::Weight>(
-      rows.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<StepGuard::Weight>& out) {
+      rows.size(), hessian_grain,
+      [&](std::size_t begin, std::size_t end, std::vector<StepGuard::Weight>& out) {
         for (std::size_t r = begin; r < end; ++r) {
           const ContactRow& row = rows[r];
           rows_[r] = {row.normal, row.normal_stiffness, row.tangential};
@@ -60,7 +61,7 @@ void ContactHessian::for_each_row(const std::function<void(const StepGuard::Cont
 }
 
 double ContactHessian::value(ConstVectors q) const {
-  return parallel_sum(rows_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(rows_.size(), hessian_grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t r = begin; r < end; ++r) {
       const Vec3 u = relative(r, q);
@@ -72,7 +73,7 @@ double ContactHessian::value(ConstVectors q) const {
 
 void ContactHessian::add_hessian_product(ConstVectors /*q*/, ConstVectors p, Vectors y) const {
   std::vector<Vec3> forces(rows_.size());
-  parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows_.size(), hessian_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) forces[r] = rows_[r].times(relative(r, p));
   });
   for (std::size_t r = 0; r < rows_.size(); ++r)
@@ -83,7 +84,7 @@ void ContactHessian::add_hessian_product(ConstVectors /*q*/, ConstVectors p, Vec
 void ContactHessian::linearize(ConstVectors /*q*/, HessianSink& into, std::size_t first) const {
   const std::uint8_t* fixed = into.fixed().data() + first;
   std::vector<int> begins(rows_.size() + 1, 0);
-  parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows_.size(), hessian_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r)
       for (const StepGuard::Weight& w : weights(r)) begins[r + 1] += fixed[w.vertex] == 0 ? 1 : 0;
   });
@@ -91,7 +92,7 @@ void ContactHessian::linearize(ConstVectors /*q*/, HessianSink& into, std::size_
   const RelativeTerms terms =
       into.relative_terms(first, vertex_count_, rows_.size(), static_cast<std::size_t>(begins.back()));
   const double scale = into.scale();
-  parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows_.size(), hessian_grain, [&](std::size_t begin, std::size_t end) {
     std::vector<RelativeTerms::Weight> free;
     for (std::size_t r = begin; r < end; ++r) {
       free.clear();

@@ -13,7 +13,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 512;
+constexpr std::size_t potential_grain = 512;
 
 int point_count(const MergedContact& contact) {
   int count = 0;
@@ -89,8 +89,8 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
     FrictionTerm sliding;
     Carried carried;
   };
-  const auto made =
-      parallel_collect<Made>(contacts_.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+  const auto made = parallel_collect<Made>(
+      contacts_.size(), potential_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const MergedContact& contact = contacts_[i];
           if (!(contact.slope < 0) || contact.key == 0) continue;
@@ -179,7 +179,7 @@ ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
   std::vector<Vec3> buffer;
   const ConstVectors x = points(q, buffer);
   Parts sum;
-  sum.normal = parallel_sum(terms_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+  sum.normal = parallel_sum(terms_.size(), potential_grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double part = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const ContactTerm& term = terms_[i];
@@ -188,13 +188,14 @@ ContactPotential::Parts ContactPotential::parts(ConstVectors q) const {
     }
     return part;
   });
-  sum.friction = parallel_sum(friction_terms_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
-    double part = 0;
-    for (std::size_t i = begin; i < end; ++i)
-      part += friction_terms_[i].limit *
-              friction_law(slip(friction_terms_[i], x, q).norm(), friction_.stick_length).value;
-    return part;
-  });
+  sum.friction =
+      parallel_sum(friction_terms_.size(), potential_grain, 0.0, [&](std::size_t begin, std::size_t end) {
+        double part = 0;
+        for (std::size_t i = begin; i < end; ++i)
+          part += friction_terms_[i].limit *
+                  friction_law(slip(friction_terms_[i], x, q).norm(), friction_.stick_length).value;
+        return part;
+      });
   return sum;
 }
 
@@ -251,8 +252,8 @@ ContactHessian ContactPotential::hessian(ConstVectors q) const {
   std::vector<MergedContact> merged;
   const ConstVectors x = points(q, buffer);
   const std::span<const MergedContact> all = contacts(x, merged);
-  auto rows =
-      parallel_collect<ContactRow>(all.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+  auto rows = parallel_collect<ContactRow>(
+      all.size(), potential_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         for (const MergedContact& contact : all.subspan(begin, end - begin)) {
           if (contact.curvature > 0)
             out.push_back({contact.points, contact.weights, contact.normal, contact.curvature, 0, {}});
@@ -261,7 +262,7 @@ ContactHessian ContactPotential::hessian(ConstVectors q) const {
       });
   const std::size_t normal_rows = rows.size();
   rows.resize(normal_rows + friction_terms_.size());
-  parallel_for(friction_terms_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(friction_terms_.size(), potential_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const FrictionTerm& sliding = friction_terms_[i];
       const double secant =

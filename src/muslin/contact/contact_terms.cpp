@@ -14,7 +14,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024, patch_grain = 128;
+constexpr std::size_t term_grain = 1024, patch_grain = 128;
 constexpr double rounding = 1e-9;
 /// A round body meets the insides of faces and edges within this share of the range, and not at all where
 /// they come nearer to it than their corners by less than the second share: then these are enough. One that
@@ -311,7 +311,7 @@ std::vector<int> by_features(std::span<const ContactPair> pairs, std::span<const
   std::vector<int> sorted(found.size());
   std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
   for (const int i : found) sorted[next[static_cast<std::size_t>(pair_of(i).first)]++] = i;
-  parallel_for(point_count, grain, [&](std::size_t first, std::size_t last) {
+  parallel_for(point_count, term_grain, [&](std::size_t first, std::size_t last) {
     for (std::size_t v = first; v < last; ++v) {
       std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begins[v]),
                 sorted.begin() + static_cast<std::ptrdiff_t>(begins[v + 1]),
@@ -399,14 +399,14 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt
   const auto is_near_pair = [&](std::size_t i) {
     return distances.is_known(i) && is_near(distances[i].distance - pairs[i].thickness, pairs[i].range);
   };
-  std::vector<ContactTerm> terms =
-      parallel_collect<ContactTerm>(pairs.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+  std::vector<ContactTerm> terms = parallel_collect<ContactTerm>(
+      pairs.size(), term_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         for (std::size_t i = begin; i < end; ++i) {
           if (pairs[i].kind != PairKind::vertex_triangle && is_near_pair(i)) add_term(distances, i, dt, out);
         }
       });
   const std::vector<int> found =
-      parallel_collect<int>(pairs.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      parallel_collect<int>(pairs.size(), term_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         for (std::size_t i = begin; i < end; ++i) {
           if (pairs[i].kind == PairKind::vertex_triangle && is_near_pair(i))
             out.push_back(static_cast<int>(i));
@@ -455,7 +455,7 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt
 std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::span<const ContactTerm> terms,
                                            ConstVectors x) {
   const std::vector<MergedContact> contacts = parallel_collect<MergedContact>(
-      terms.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      terms.size(), term_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const PairGeometry at = term_geometry(surface, terms[i], x);
           const double gap = at.distance - terms[i].thickness;

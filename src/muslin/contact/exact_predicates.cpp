@@ -124,7 +124,7 @@ bool segment_meets_triangle_in_plane(const Segment& s, const Triangle& t, int ax
 }
 
 /// As segment_meets_triangle, given the sides of the segment's ends.
-bool segment_meets_triangle(const Segment& s, const Triangle& t, int side0, int side1) {
+bool segment_crosses_triangle(const Segment& s, const Triangle& t, int side0, int side1) {
   if (side0 * side1 > 0) return false;
   if (side0 != 0 || side1 != 0) {
     // The line pierces the plane in one point, of the segment; inside if it passes all edges on one side.
@@ -181,8 +181,8 @@ bool segments_meet(const Segment& s, const Segment& t) {
 }
 
 bool segment_meets_triangle(const Segment& s, const Triangle& t) {
-  return segment_meets_triangle(s, t, orientation(t[0], t[1], t[2], s[0]),
-                                orientation(t[0], t[1], t[2], s[1]));
+  return segment_crosses_triangle(s, t, orientation(t[0], t[1], t[2], s[0]),
+                                  orientation(t[0], t[1], t[2], s[1]));
 }
 
 bool triangles_meet(const Triangle& s, const Triangle& t) {
@@ -195,8 +195,8 @@ bool triangles_meet(const Triangle& s, const Triangle& t) {
   if (all_on_one_side(of_s)) return false;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
-    if (segment_meets_triangle({s[i], s[j]}, t, of_s[i], of_s[j]) ||
-        segment_meets_triangle({t[i], t[j]}, s, of_t[i], of_t[j]))
+    if (segment_crosses_triangle({s[i], s[j]}, t, of_s[i], of_s[j]) ||
+        segment_crosses_triangle({t[i], t[j]}, s, of_t[i], of_t[j]))
       return true;
   }
   return false;

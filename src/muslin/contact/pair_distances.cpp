@@ -11,7 +11,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 2048;
+constexpr std::size_t distance_grain = 2048;
 
 /// Displacement of a point since the pairs were found [m]; padded, so that it is one load.
 using Displacement = std::array<float, 4>;
@@ -44,7 +44,7 @@ void PairDistances::update(ConstVectors x) {
   if (std::equal(x.begin(), x.end(), x_.begin(), x_.end())) return;
   x_.assign(x.begin(), x.end());
   std::vector<Displacement> moved(x.size());
-  parallel_for(x.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(x.size(), distance_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const Vec3 way = x[p] - from[p];
       moved[p] = {static_cast<float>(way.x()), static_cast<float>(way.y()), static_cast<float>(way.z()), 0};
@@ -55,7 +55,7 @@ void PairDistances::update(ConstVectors x) {
   const double reach = ranges_known * candidates_->contact_distance();
   geometry_.resize(pairs.size());
   known_.resize(pairs.size());
-  parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(pairs.size(), distance_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       known_[i] = 0;
       geometry_[i].distance =

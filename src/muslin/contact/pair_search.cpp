@@ -18,7 +18,7 @@ namespace muslin {
 namespace {
 
 constexpr int leaf_size = 8;
-constexpr std::size_t grain = 4096;
+constexpr std::size_t search_grain = 4096;
 
 /// Numbers of two leaves.
 struct LeafPair {
@@ -291,7 +291,7 @@ struct PairSearch::Tree {
 
   void fit_end(const std::vector<PointBox>& boxes, int e, double reach) {
     std::vector<FloatBox>& points = point_boxes[e];
-    parallel_for(points.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(points.size(), search_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         if (!moved.empty() && moved[p] == 0) continue;
         const double pad = surface->radius_of(static_cast<int>(p)) + reach / 2;
@@ -303,7 +303,7 @@ struct PairSearch::Tree {
       }
     });
     const auto fit_lanes = [&](FeatureGroups& all, int points_each) {
-      parallel_for(all.lanes.size(), grain / lane_count, [&](std::size_t begin, std::size_t end) {
+      parallel_for(all.lanes.size(), search_grain / lane_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) {
           const FeatureLanes& lanes = all.lanes[g];
           if (!moved.empty() && !has_moved(lanes, points_each)) continue;

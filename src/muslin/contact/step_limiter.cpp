@@ -13,7 +13,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t limit_grain = 1024;
 /// Points with less weight in the closest points do not make a pair approach.
 constexpr double least_weight = 0.01;
 /// Share of a gap, or of the contact distance if that is less, that deflection leaves, and, near the floor,
@@ -189,15 +189,15 @@ struct StepLimiter::Work {
   /// Checks the pairs of points whose step has changed; returns whether any comes too close.
   bool judge(ConstVectors dq) {
     map.apply(dq, u);
-    std::vector<std::uint8_t> found((pairs.size() + grain - 1) / grain, 0);
-    parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint8_t> found((pairs.size() + limit_grain - 1) / limit_grain, 0);
+    parallel_for(pairs.size(), limit_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const ContactPair& pair = pairs[i];
         bool look = false;
         for (int k = 0; k < pair.point_count(); ++k)
           look |= moved[static_cast<std::size_t>(pair.points[static_cast<std::size_t>(k)])] != 0;
         if (look) factors[i] = safe_factor(i);
-        if (factors[i] < 1) found[begin / grain] = 1;
+        if (factors[i] < 1) found[begin / limit_grain] = 1;
       }
     });
     std::fill(moved.begin(), moved.end(), 0);
@@ -212,11 +212,11 @@ struct StepLimiter::Work {
   /// vertices in `deflected` (#V).
   template <class Chosen>
   void deflect(Vectors dq, const Chosen& chosen, std::vector<std::uint8_t>& deflected) {
-    std::vector<std::vector<HalfSpace>> parts((pairs.size() + grain - 1) / grain);
-    parallel_for(pairs.size(), grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::vector<HalfSpace>> parts((pairs.size() + limit_grain - 1) / limit_grain);
+    parallel_for(pairs.size(), limit_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (factors[i] < 1 && chosen(pairs[i].kind))
-          restrict_pair(pairs[i], start[i], factors[i], parts[begin / grain]);
+          restrict_pair(pairs[i], start[i], factors[i], parts[begin / limit_grain]);
       }
     });
     // By vertex, in the order of the pairs.
@@ -230,7 +230,7 @@ struct StepLimiter::Work {
       for (const HalfSpace& h : part)
         by_vertex[static_cast<std::size_t>(next[static_cast<std::size_t>(h.vertex)]++)] = &h;
     std::vector<std::uint8_t> changed(dq.size(), 0);
-    parallel_for(dq.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(dq.size(), limit_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         if (!held.empty() && held[v] != 0) continue;
         for (int i = offsets[v]; i < offsets[v + 1]; ++i) {
@@ -302,7 +302,7 @@ struct StepLimiter::Work {
     for (std::size_t round = 0;; ++round) {
       map.apply(dq, u);
       const auto outside = parallel_collect<std::pair<int, double>>(
-          map.point_count(), grain, [&](auto begin, auto end, auto& out) {
+          map.point_count(), limit_grain, [&](auto begin, auto end, auto& out) {
             for (std::size_t p = begin; p < end; ++p)
               if (const double factor = factor_within_box(p); factor < 1)
                 out.emplace_back(static_cast<int>(p), factor);

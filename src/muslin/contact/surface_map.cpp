@@ -11,7 +11,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 2048;
+constexpr std::size_t map_grain = 2048;
 
 }  // namespace
 
@@ -54,12 +54,12 @@ SurfaceMap::SurfaceMap(std::size_t vertex_count, std::vector<int> offsets, std::
 
 void SurfaceMap::apply(ConstVectors q, Vectors x) const {
   if (identity_) {
-    parallel_for(q.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(q.size(), map_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) x[v] = q[v];
     });
     return;
   }
-  parallel_for(point_count(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(point_count(), map_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       Vec3 sum = Vec3::Zero();
       for (const Entry& e : row(p)) sum += e.weight * q[static_cast<std::size_t>(e.vertex)];
@@ -69,7 +69,7 @@ void SurfaceMap::apply(ConstVectors q, Vectors x) const {
 }
 
 void SurfaceMap::add_transpose(ConstVectors f, Vectors g) const {
-  parallel_for(vertex_count_, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertex_count_, map_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       Vec3 sum = Vec3::Zero();
       for (const Entry& e : column(v)) sum += e.weight * f[static_cast<std::size_t>(e.vertex)];

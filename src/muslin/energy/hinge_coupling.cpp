@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/topology/topology.hpp"
 
@@ -25,8 +26,6 @@ constexpr double least_rigidity = 1e-8;
 // Entries of K this small beside the diagonal are rounding.
 constexpr double rounding = 1e-12;
 constexpr std::size_t grain = 1024;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Mat3 plate_rigidity(const BendingModuli& m) {
   require(m.warp >= 0 && m.weft >= 0, "a bending modulus is negative", "give 0 or more");
@@ -259,9 +258,10 @@ class Coupler {
          second = turn_by_curvature(side_of(edge.sides[1]));
     second[2] = -second[2];
     const double areas = shell_.areas[at(edge.sides[0].triangle)] + shell_.areas[at(edge.sides[1].triangle)];
-    const Mat3 normal =
-        by_curvature.transpose() * weighted + ridge * areas * rigidity_.trace() / 3 * Mat3::Identity();
-    return weighted * normal.ldlt().solve(0.5 * (first - second));
+    // Few rows: products for large matrices would take longer, also to compile.
+    const Mat3 normal = by_curvature.transpose().lazyProduct(weighted) +
+                        ridge * areas * rigidity_.trace() / 3 * Mat3::Identity();
+    return weighted.lazyProduct(normal.ldlt().solve(0.5 * (first - second)));
   }
 
   /// θ of a hinge by a constant curvature in the frame of `edge`, its second triangle unfolded about it.

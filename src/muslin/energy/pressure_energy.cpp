@@ -5,14 +5,13 @@
 #include <vector>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/potential/hessian_sink.hpp"
 
 namespace muslin {
 namespace {
 
 constexpr double least_share = 0.01;  // of V₀, below which the pressure is linear
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Mat3 cross_matrix(const Vec3& e) {
   Mat3 m;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
@@ -12,8 +13,6 @@ namespace {
 // Up to this ratio of the stiffness of all hinges times dt² to the masses, Newton's method with the lumped
 // matrix takes at most a few iterations more, and linear iterations cost half (docs/notebook/bending.md).
 constexpr double stiff = 16;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 MUSLIN_VECTOR_CODE void deviations_of(const Batch<4>& x, const double* rest, double* out) {
   BentHinge h;

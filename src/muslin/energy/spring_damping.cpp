@@ -10,7 +10,7 @@ namespace muslin {
 namespace {
 
 /// W = Σ ½ c (nᵀ(z − z_anchor))², n of the predicted positions; c = β k / dt.
-class Dashpots : public Potential {
+class SpringDashpots : public Potential {
   SpringType type(const SpringPiece& piece) const {
     return springs_->type(piece.direction, piece.slot, factor_);
   }
@@ -29,7 +29,7 @@ class Dashpots : public Potential {
   }
 
  public:
-  Dashpots(std::shared_ptr<const SpringEnergy> springs, double factor, const StepContext& step)
+  SpringDashpots(std::shared_ptr<const SpringEnergy> springs, double factor, const StepContext& step)
       : springs_(std::move(springs)), factor_(factor) {
     const std::size_t count = step.positions.size();
     constexpr std::size_t grain = 8192;
@@ -92,7 +92,7 @@ SpringDamping::SpringDamping(std::shared_ptr<const SpringEnergy> springs, double
 
 std::unique_ptr<Potential> SpringDamping::potential(const StepContext& step) const {
   if (beta_ == 0) return nullptr;
-  return std::make_unique<Dashpots>(springs_, beta_ / step.dt, step);
+  return std::make_unique<SpringDashpots>(springs_, beta_ / step.dt, step);
 }
 
 }  // namespace muslin

@@ -7,7 +7,7 @@ namespace muslin {
 
 namespace {
 
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t volume_grain = 512;
 
 using Corners = std::array<Vec3, 8>;
 
@@ -79,7 +79,7 @@ VolumeEnergy::VolumeEnergy(const Lattice& lattice, double volume_modulus)
 template <class Kernel>
 void VolumeEnergy::for_each_cell(const Kernel& kernel) const {
   for (const std::vector<Cell>& cells : colours_) {
-    parallel_for(cells.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(cells.size(), volume_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) kernel(cells[i]);
     });
   }
@@ -88,7 +88,7 @@ void VolumeEnergy::for_each_cell(const Kernel& kernel) const {
 double VolumeEnergy::value(ConstVectors x) const {
   double sum = 0;
   for (const std::vector<Cell>& cells : colours_) {
-    sum += parallel_sum(cells.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    sum += parallel_sum(cells.size(), volume_grain, 0.0, [&](std::size_t begin, std::size_t end) {
       double part = 0;
       for (std::size_t i = begin; i < end; ++i) {
         const Volume v([&](std::size_t corner) -> const Vec3& { return x[cells[i].vertex(corner)]; });

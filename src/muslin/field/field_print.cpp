@@ -29,11 +29,11 @@ bool parse_number(std::string_view text, Number& value) {
 }
 
 // Samples first … first + count − 1, in multiples of the voxel width.
-struct Range {
+struct PrintedRange {
   double first = 0, count = 0;
 };
 
-Range sample_range(double low, double high, double width, int margin) {
+PrintedRange sample_range(double low, double high, double width, int margin) {
   const double first = std::ceil(low / width - on_sample) - margin;
   const double last = std::floor(high / width + on_sample) + margin;
   return {first, std::max(0.0, last - first + 1)};
@@ -126,7 +126,7 @@ std::string print_field(const Mesh& mesh, const FieldPrintSettings& settings) {
   const auto range = [&](int axis) {
     return sample_range(bounds.min()[axis], bounds.max()[axis], width, settings.margin[axis]);
   };
-  const Range columns = range(across), rows = range(upward);
+  const PrintedRange columns = range(across), rows = range(upward);
   if (columns.count * rows.count > max_samples)
     throw Error(ErrorKind::usage,
                 fmt::format("a slice of this mesh has {:.0f} × {:.0f} samples at the voxel width {} m",

@@ -11,21 +11,21 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 8192;
+constexpr std::size_t function_grain = 8192;
 
 class FrozenForces : public Potential {
  public:
   explicit FrozenForces(std::vector<Vec3> forces) : forces_(std::move(forces)) {}
 
   double value(ConstVectors x) const override {
-    return parallel_sum(x.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(x.size(), function_grain, 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t v = begin; v < end; ++v) sum -= forces_[v].dot(x[v]);
       return sum;
     });
   }
   void add_gradient(ConstVectors, Vectors g) const override {
-    parallel_for(g.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(g.size(), function_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) g[v] -= forces_[v];
     });
   }

@@ -10,7 +10,7 @@ namespace muslin {
 
 namespace {
 
-constexpr std::size_t kGrain = 8192;
+constexpr std::size_t gravity_grain = 8192;
 
 class UniformField : public Potential {
  public:
@@ -26,7 +26,7 @@ class UniformField : public Potential {
   }
   void add_gradient(ConstVectors x, Vectors g) const override {
     assert(x.size() == masses_->size());
-    parallel_for(x.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(x.size(), gravity_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) g[v] -= (*masses_)[v] * acceleration_;
     });
   }
@@ -38,7 +38,7 @@ class UniformField : public Potential {
   /// Calls also(v) for all v; returns the energy.
   template <class Also>
   double pass(ConstVectors x, const Also& also) const {
-    const Vec3 moment = parallel_sum(x.size(), kGrain, Vec3(Vec3::Zero()), [&](auto begin, auto end) {
+    const Vec3 moment = parallel_sum(x.size(), gravity_grain, Vec3(Vec3::Zero()), [&](auto begin, auto end) {
       // Independent sums, for instruction-level parallelism.
       constexpr std::size_t sums = 4;
       std::array<Vec3, sums> sum;

@@ -15,7 +15,7 @@ namespace muslin {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t wind_grain = 1024;
 
 /// A sparse matrix of weights, row after row.
 struct Rows {
@@ -110,7 +110,7 @@ class RelativeDrag : public Potential {
       : faces_(std::move(faces)), drags_(std::move(drags)), dt_(dt) {}
 
   double value(ConstVectors x) const override {
-    return parallel_sum(drags_.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(drags_.size(), wind_grain, 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t t = begin; t < end; ++t) {
         const Vec3 d = drags_[t].target - faces_->centroids.apply(t, x.data());
@@ -131,7 +131,7 @@ class RelativeDrag : public Potential {
   }
   void add_diagonal_blocks(ConstVectors, std::span<Mat3> blocks) const override {
     const Rows& rows = faces_->vertices;
-    parallel_for(rows.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(rows.size(), wind_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         for (std::size_t e = rows.offsets[v]; e < rows.offsets[v + 1]; ++e) {
           const FaceDrag& face = drags_[static_cast<std::size_t>(rows.columns[e])];
@@ -149,10 +149,10 @@ class RelativeDrag : public Potential {
   void scatter(Vectors y, const Force& force) const {
     assert(y.size() == faces_->vertices.size());
     const auto forces = std::make_unique_for_overwrite<Vec3[]>(drags_.size());
-    parallel_for(drags_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(drags_.size(), wind_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) forces[t] = force(t);
     });
-    parallel_for(y.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(y.size(), wind_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) y[v] += faces_->vertices.apply(v, forces.get());
     });
   }
@@ -193,7 +193,7 @@ std::unique_ptr<Potential> Wind::potential(const StepContext& step) const {
   std::vector<Vec3> points(faces_->skin.size());
   faces_->skin.apply(step.positions, points);
   std::vector<FaceDrag> drags(faces_->triangles.size());
-  parallel_for(drags.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(drags.size(), wind_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Vec3i& corner = faces_->triangles[t];
       const Vec3& a = points[static_cast<std::size_t>(corner[0])];

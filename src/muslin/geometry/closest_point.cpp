@@ -14,8 +14,8 @@
 namespace muslin {
 namespace {
 
-constexpr int leaf_size = 4;
-constexpr int parallel_leaves = 512;
+constexpr int closest_leaf_size = 4;
+constexpr int closest_parallel_leaves = 512;
 
 // Below this squared sine of the angle between two edges the signs of the barycentric coordinates are
 // unreliable, and every edge is tested.
@@ -161,7 +161,7 @@ void ClosestPointQuery::Tree::build(int index, int leaves, int begin, int end) {
   if (leaves == 1) return;
   const Vec3 axis = node.axes.row(2).transpose();
   const int left_leaves = leaves / 2;
-  const int middle = begin + left_leaves * leaf_size;
+  const int middle = begin + left_leaves * closest_leaf_size;
   const auto along = [&](const Triangle& t) { return axis.dot(3 * t.a + t.ab + t.ac); };
   std::nth_element(triangles.begin() + begin, triangles.begin() + middle, triangles.begin() + end,
                    [&](const Triangle& s, const Triangle& t) {
@@ -171,7 +171,7 @@ void ClosestPointQuery::Tree::build(int index, int leaves, int begin, int end) {
   node.right = index + 2 * left_leaves;
   const auto build_left = [&] { build(index + 1, left_leaves, begin, middle); };
   const auto build_right = [&] { build(node.right, leaves - left_leaves, middle, end); };
-  if (leaves > parallel_leaves) {
+  if (leaves > closest_parallel_leaves) {
     tbb::parallel_invoke(build_left, build_right);
   } else {
     build_left();
@@ -214,7 +214,7 @@ ClosestPointQuery::ClosestPointQuery(ConstVectors positions, std::span<const Vec
                       positions[static_cast<std::size_t>(t.z())], static_cast<int>(tree.triangles.size())));
   if (triangles.empty()) return;
   const int count = static_cast<int>(triangles.size());
-  const int leaves = (count + leaf_size - 1) / leaf_size;
+  const int leaves = (count + closest_leaf_size - 1) / closest_leaf_size;
   tree.nodes.resize(static_cast<std::size_t>(2 * leaves - 1));
   tree.build(0, leaves, 0, count);
   tree.places.resize(triangles.size());

@@ -7,14 +7,13 @@
 #include <fmt/format.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t volume_grain = 1024;
 
 /// Directed edges and the corner opposite to them.
 using DirectedEdges = std::map<std::pair<int, int>, int>;
@@ -97,7 +96,7 @@ std::vector<Vec3> EnclosedVolume::relative(ConstVectors x) const {
 
 double EnclosedVolume::value(ConstVectors x) const {
   const std::vector<Vec3> all = relative(x);
-  return parallel_sum(triangles_.size(), grain, 0.0,
+  return parallel_sum(triangles_.size(), volume_grain, 0.0,
                       [&](std::size_t begin, std::size_t end) {
                         double sum = 0;
                         for (std::size_t t = begin; t < end; ++t) {
@@ -116,7 +115,7 @@ void EnclosedVolume::add_to_vertices(double factor, const Share& share, Vectors 
     for (int k = first_[v]; k < first_[v + 1]; ++k) total += share(opposite_[at(k)][0], opposite_[at(k)][1]);
     return Vec3(factor / 6 * total);
   };
-  parallel_for(vertex_count_, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertex_count_, volume_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       if (first_[v] < first_[v + 1]) to[v] += sum(v);
   });

@@ -15,7 +15,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 16384;
+constexpr std::size_t report_grain = 16384;
 
 std::string counted(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
@@ -73,7 +73,7 @@ std::optional<Fault> broken_arrays(const Mesh& mesh) {
 // Each edge of each face as one number: the lower vertex, the higher, and its direction.
 void count_edges(const Mesh& mesh, MeshReport& report) {
   std::vector<std::uint64_t> edges(mesh.face_vertices.size());
-  parallel_for(mesh.face_count(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mesh.face_count(), report_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const auto face = mesh.face(f);
       for (std::size_t c = 0; c < face.size(); ++c) {
@@ -129,7 +129,7 @@ void count_duplicates(const Mesh& mesh, MeshReport& report) {
   std::iota(order.begin(), order.end(), 0);
   const auto begin = [&](int f) { return sorted.begin() + mesh.face_offsets[static_cast<std::size_t>(f)]; };
   const auto end = [&](int f) { return sorted.begin() + mesh.face_offsets[static_cast<std::size_t>(f) + 1]; };
-  parallel_for(order.size(), grain, [&](std::size_t first, std::size_t last) {
+  parallel_for(order.size(), report_grain, [&](std::size_t first, std::size_t last) {
     for (std::size_t f = first; f < last; ++f)
       std::sort(begin(static_cast<int>(f)), end(static_cast<int>(f)));
   });
@@ -144,7 +144,7 @@ void count_duplicates(const Mesh& mesh, MeshReport& report) {
 void measure(const Mesh& mesh, const Triangulation& cut, MeshReport& report) {
   const Vec3 center = report.bounds.center();
   const Vec2 sums =
-      parallel_sum(cut.triangles.size(), grain, Vec2(0, 0), [&](std::size_t begin, std::size_t end) {
+      parallel_sum(cut.triangles.size(), report_grain, Vec2(0, 0), [&](std::size_t begin, std::size_t end) {
         Vec2 sum(0, 0);
         for (std::size_t t = begin; t < end; ++t) {
           const Vec3 a = mesh.positions[static_cast<std::size_t>(cut.triangles[t][0])] - center,
@@ -157,7 +157,7 @@ void measure(const Mesh& mesh, const Triangulation& cut, MeshReport& report) {
   report.area = sums[0];
   report.volume = sums[1];
   report.degenerate_faces =
-      parallel_sum(mesh.face_count(), grain, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
+      parallel_sum(mesh.face_count(), report_grain, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
         std::size_t degenerate = 0;
         for (std::size_t f = begin; f < end; ++f) {
           const auto face = mesh.face(f);

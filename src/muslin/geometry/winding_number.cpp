@@ -10,9 +10,9 @@
 namespace muslin {
 namespace {
 
-constexpr int leaf_size = 8;
+constexpr int winding_leaf_size = 8;
 constexpr double far_factor = 2;  // the series is used beyond this many cluster radii
-constexpr int parallel_leaves = 512;
+constexpr int winding_parallel_leaves = 512;
 
 }  // namespace
 
@@ -83,7 +83,7 @@ WindingNumber::Moments WindingNumber::build(int node, int leaves, std::span<int>
   self.end = begin + static_cast<int>(order.size());
   Moments moments;
   if (leaves == 1) {
-    std::array<Moments, leaf_size> parts;
+    std::array<Moments, winding_leaf_size> parts;
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Triangle& triangle = triangles[static_cast<std::size_t>(order[i])];
       triangles_[static_cast<std::size_t>(begin) + i] = triangle;
@@ -100,7 +100,7 @@ WindingNumber::Moments WindingNumber::build(int node, int leaves, std::span<int>
     int axis = 0;
     centres.sizes().maxCoeff(&axis);
     const int left_leaves = leaves / 2;
-    const std::size_t middle = static_cast<std::size_t>(left_leaves) * leaf_size;
+    const std::size_t middle = static_cast<std::size_t>(left_leaves) * winding_leaf_size;
     std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle), order.end(),
                      [&](int s, int t) {
                        const double x = centre(s)[axis], y = centre(t)[axis];
@@ -115,7 +115,7 @@ WindingNumber::Moments WindingNumber::build(int node, int leaves, std::span<int>
       parts[1] = build(self.right, leaves - left_leaves, order.subspan(middle),
                        begin + static_cast<int>(middle), triangles);
     };
-    if (leaves > parallel_leaves) {
+    if (leaves > winding_parallel_leaves) {
       tbb::parallel_invoke(build_left, build_right);
     } else {
       build_left();
@@ -149,7 +149,7 @@ WindingNumber::WindingNumber(ConstVectors positions, std::span<const Vec3i> tria
     corners.push_back({positions[static_cast<std::size_t>(t.x())], positions[static_cast<std::size_t>(t.y())],
                        positions[static_cast<std::size_t>(t.z())]});
   if (corners.empty()) return;
-  const int leaves = (static_cast<int>(corners.size()) + leaf_size - 1) / leaf_size;
+  const int leaves = (static_cast<int>(corners.size()) + winding_leaf_size - 1) / winding_leaf_size;
   std::vector<int> order(corners.size());
   std::iota(order.begin(), order.end(), 0);
   triangles_.resize(corners.size());

@@ -11,7 +11,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t row_grain = 256;
+constexpr std::size_t connect_grain = 256;
 
 /// Rows (j,k) of vertices: every voxel row touches four.
 std::vector<std::pair<int, int>> vertex_rows(const RowIndex& voxels) {
@@ -48,7 +48,7 @@ void connect_voxels(Lattice& lattice) {
   const RowIndex voxels(lattice.voxels);
   const auto rows = vertex_rows(voxels);
   std::vector<std::int64_t> first(rows.size() + 1, 0);
-  parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows.size(), connect_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r)
       for_each_vertex(voxels, rows[r].first, rows[r].second, [&](int) { ++first[r + 1]; });
   });
@@ -58,7 +58,7 @@ void connect_voxels(Lattice& lattice) {
                 "use a larger voxel width");
 
   lattice.vertices.resize(first.back());
-  parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows.size(), connect_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       std::int64_t at = first[r];
       for_each_vertex(voxels, rows[r].first, rows[r].second, [&](int x) {
@@ -69,7 +69,7 @@ void connect_voxels(Lattice& lattice) {
 
   lattice.voxel_vertices.resize(lattice.voxels.size());
   const RowIndex vertices(lattice.vertices);
-  parallel_for(voxels.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(voxels.size(), connect_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       const Row& row = voxels[r];
       for (int side = 0; side < 4; ++side) {

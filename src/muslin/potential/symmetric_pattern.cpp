@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "muslin/core/index.hpp"
+
 namespace muslin {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 SymmetricPattern::SymmetricPattern(std::vector<std::pair<int, int>> pairs, std::size_t vertex_count) {
   for (auto& [row, column] : pairs)

@@ -18,8 +18,6 @@
 namespace muslin {
 namespace {
 
-constexpr double max_steps = 1e6;  // of a frame
-
 Progress component_progress(const Progress& whole, std::size_t index, std::size_t count) {
   Progress part;
   part.cancelled = whole.cancelled;
@@ -114,11 +112,11 @@ void add_terms(Model& model, const Component& component) {
 void choose_explicit_steps(Model& model) {
   TimeSettings& time = model.scene.time;
   if (model.scene.solver.integrator != Integrator::symplectic_euler || time.steps_per_frame) return;
-  constexpr double share = 0.9;
+  constexpr double share = 0.9, most = 1e6;  // most: steps of a frame
   double stable = std::numeric_limits<double>::infinity();
   for (const Component& body : model.bodies) stable = std::min(stable, body.statistics.stable_step);
   const double steps = std::ceil(1 / (time.frame_rate * share * stable));
-  time.steps_per_frame = static_cast<int>(std::clamp(steps, 1.0, max_steps));
+  time.steps_per_frame = static_cast<int>(std::clamp(steps, 1.0, most));
 }
 
 void warn_of_explicit_steps(Model& model) {

@@ -11,7 +11,7 @@ std::string both_move(const char* key) {
   return fmt::format("`{}` and `sequence` both say how the pin moves", key);
 }
 
-schema::Table declared() {
+schema::Table declare_pin() {
   schema::Table table = schema::table_of<PinSettings>(
       "[[pin]]",
       {name_key<PinSettings>("`pin0`, `pin1`, …").means("name in messages and in `selections.json`"),
@@ -49,7 +49,7 @@ schema::Table declared() {
 }  // namespace
 
 const schema::Table& pin_table() {
-  static const schema::Table table = declared();
+  static const schema::Table table = declare_pin();
   return table;
 }
 

@@ -22,7 +22,7 @@ constexpr double largest_pressure = 1e9;  // [Pa]
 /// A gas needs a volume of at least this share of (area)^(3/2).
 constexpr double flattest = 1e-6;
 
-schema::Table declared() {
+schema::Table declare_pressure() {
   schema::Table table = schema::table_of<PressureSettings>(
       "[[pressure]]",
       {name_key<PressureSettings>("`pressure0`, `pressure1`, …").means("name in messages"),
@@ -141,7 +141,7 @@ class PressureBuilder {
 }  // namespace
 
 const schema::Table& pressure_table() {
-  static const schema::Table table = declared();
+  static const schema::Table table = declare_pressure();
   return table;
 }
 

@@ -180,7 +180,7 @@ void finish_probe(const TomlTable& table, std::size_t index, ProbeSettings& prob
   require_new_name(table, scene.probes, "probe", "probe", probe.name);
 }
 
-schema::Table declared() {
+schema::Table declare_scene() {
   return schema::table_of<Scene>(
       "scene", {schema::text("title", &Scene::title)
                     .otherwise("the file's name")
@@ -220,7 +220,7 @@ schema::Table declared() {
 }  // namespace
 
 const schema::Table& scene_table() {
-  static const schema::Table table = declared();
+  static const schema::Table table = declare_scene();
   return table;
 }
 

@@ -43,7 +43,7 @@ void write_points(const Key& key, const std::vector<Vec3>& points, TomlValue& ou
   schema::append(out, key.name, std::move(items));
 }
 
-const schema::Table& sphere_table() {
+const schema::Table& inside_sphere_table() {
   using Sphere = Selection::SphereShape;
   static const schema::Table table = schema::table_of<Sphere>(
       "`where.sphere`", {schema::vector("center", &Sphere::center).unit("m").required().means("its centre"),
@@ -55,7 +55,7 @@ const schema::Table& sphere_table() {
   return table;
 }
 
-const schema::Table& plane_table() {
+const schema::Table& near_plane_table() {
   using Plane = Selection::PlaneShape;
   static const schema::Table table = schema::table_of<Plane>(
       "`where.plane`",
@@ -89,7 +89,7 @@ const schema::Table& line_table() {
   return table;
 }
 
-schema::Table declared() {
+schema::Table declare_selection() {
   Key box =
       schema::custom<Selection>("box", {Type::points}, read_box,
                                 [](const Key& key, const Selection& s, TomlValue& out) {
@@ -104,8 +104,9 @@ schema::Table declared() {
       {schema::text("group", &Selection::group)
            .means("carries a vertex or face of this group of the mesh (OBJ `g`)"),
        box,
-       schema::nested("sphere", &Selection::sphere, sphere_table).means("lies within `radius` of `center`"),
-       schema::nested("plane", &Selection::plane, plane_table)
+       schema::nested("sphere", &Selection::sphere, inside_sphere_table)
+           .means("lies within `radius` of `center`"),
+       schema::nested("plane", &Selection::plane, near_plane_table)
            .means("lies within `distance` of the plane through `point` across `normal`"),
        schema::nested("line", &Selection::line, line_table)
            .means("lies within `distance` of the segment `from` – `to`"),
@@ -128,7 +129,7 @@ schema::Table declared() {
 }  // namespace
 
 const schema::Table& selection_table() {
-  static const schema::Table table = declared();
+  static const schema::Table table = declare_selection();
   return table;
 }
 

@@ -5,18 +5,17 @@
 #include <compare>
 #include <utility>
 
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 /// A cell or a node of a component.
-struct Place {
+struct NodePlace {
   int component;
   std::array<int, 3> index;  // slowest axis first
-  auto operator<=>(const Place&) const = default;
+  auto operator<=>(const NodePlace&) const = default;
 };
 
 /// The grid of one component.
@@ -27,11 +26,11 @@ struct Frame {
   std::size_t axis_count = 0;
 };
 
-void sort_and_reduce(std::vector<Place>& places) {
+void sort_and_reduce(std::vector<NodePlace>& places) {
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
 }
-int find(const std::vector<Place>& places, const Place& place) {
+int find(const std::vector<NodePlace>& places, const NodePlace& place) {
   const auto found = std::lower_bound(places.begin(), places.end(), place);
   return found != places.end() && *found == place ? static_cast<int>(found - places.begin()) : -1;
 }
@@ -74,7 +73,7 @@ BackgroundGrid::BackgroundGrid(ConstVectors points, std::span<const int> compone
   }
 
   // Locate each point: its fractions now, its cell once cells are numbered.
-  std::vector<Place> place(points.size()), cells;
+  std::vector<NodePlace> place(points.size()), cells;
   parallel_for(points.size(), 16384, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       place[p].component = components[p];
@@ -100,8 +99,8 @@ BackgroundGrid::BackgroundGrid(ConstVectors points, std::span<const int> compone
   }
 
   // Nodes with a weight in some point.
-  const auto corner = [&](const Place& cell, int n) {
-    Place node = cell;
+  const auto corner = [&](const NodePlace& cell, int n) {
+    NodePlace node = cell;
     const Frame& frame = frames[at(cell.component)];
     for (std::size_t a = 0; a < frame.axis_count; ++a) node.index[2 - frame.axes[a]] += n >> a & 1;
     return node;
@@ -112,7 +111,7 @@ BackgroundGrid::BackgroundGrid(ConstVectors points, std::span<const int> compone
     cells_[c].count = 1 << frame.axis_count;
     for (std::size_t a = 0; a < frame.axis_count; ++a) cells_[c].index[a] = cells[c].index[2 - frame.axes[a]];
     for (int n = 0; n < 8; ++n) {
-      Place lower = cells[c];
+      NodePlace lower = cells[c];
       for (std::size_t a = 0; a < frame.axis_count; ++a) lower.index[2 - frame.axes[a]] -= n >> a & 1;
       cells_[c].lower[at(n)] = find(cells, lower);
     }
@@ -125,7 +124,7 @@ BackgroundGrid::BackgroundGrid(ConstVectors points, std::span<const int> compone
     for (int n = 0; n < cell.count; ++n)
       if (w[n] != 0) used[at(point.cell)] = static_cast<std::uint8_t>(used[at(point.cell)] | 1U << n);
   }
-  std::vector<Place> nodes;
+  std::vector<NodePlace> nodes;
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (int n = 0; n < cells_[c].count; ++n)
       if (used[c] >> n & 1) nodes.push_back(corner(cells[c], n));
@@ -140,7 +139,7 @@ BackgroundGrid::BackgroundGrid(ConstVectors points, std::span<const int> compone
     for (int n = 0; n < cells_[c].count; ++n)
       if (cells_[c].nodes[at(n)] < 0) cells_[c].nodes[at(n)] = any;
   }
-  for (const Place& node : nodes) {
+  for (const NodePlace& node : nodes) {
     const Frame& frame = frames[at(node.component)];
     Vec3 x = 0.5 * (frame.low + frame.high);
     for (std::size_t a = 0; a < frame.axis_count; ++a) {

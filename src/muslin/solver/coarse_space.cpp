@@ -5,19 +5,18 @@
 #include <limits>
 #include <numeric>
 
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
 
-constexpr int lanes = EliminationOrder::lanes;
+constexpr int block_lanes = EliminationOrder::lanes;
 // The factorisation of couplings leaves smoother errors than that of diagonal blocks.
 constexpr double edges_per_cell = 8, edges_per_cell_of_matrices = 4;
 constexpr int smallest_component = 64;          // vertices
 constexpr std::size_t smallest_part = 1 << 10;  // positions
 constexpr std::size_t max_parts = 4;
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Components of coupled vertices.
 class Components {
@@ -40,9 +39,9 @@ class Components {
 template <class Body>
 void for_each_coupling(const EliminationOrder& pattern, const Body& body) {
   for (const EliminationOrder::Block& block : pattern.blocks()) {
-    for (int l = 0; l < lanes; ++l)
+    for (int l = 0; l < block_lanes; ++l)
       if (block.used >> l & 1)
-        body(l + (l < block.cut ? block.first : block.second), block.group * lanes + l);
+        body(l + (l < block.cut ? block.first : block.second), block.group * block_lanes + l);
   }
 }
 /// Calls body(row, column) for the off-diagonal blocks.
@@ -150,7 +149,7 @@ CoarseSpace::CoarseSpace(const Linearization& h, ConstVectors rest_positions)
   }
   grid_matrix_ = GridMatrix(grid_, std::move(neighbours));
   held_.assign(positions, 0);
-  bundle_.resize(lanes * blocks);
+  bundle_.resize(block_lanes * blocks);
   bundle();
   const std::size_t parts = std::clamp<std::size_t>(positions / smallest_part, 1, max_parts);
   sums_.resize(parts);
@@ -185,10 +184,10 @@ void CoarseSpace::bundle() {
   for (const Set& set : sets_) {
     for (std::size_t b = 0; b < set.pattern->block_count(); ++b) {
       const EliminationOrder::Block& block = set.pattern->blocks()[b];
-      for (int l = 0; l < lanes; ++l) {
+      for (int l = 0; l < block_lanes; ++l) {
         if ((block.used >> l & 1) == 0) continue;
         BackgroundGrid::Point p = point(set.begin + at(l + (l < block.cut ? block.first : block.second))),
-                              q = point(set.begin + at(block.group * lanes + l));
+                              q = point(set.begin + at(block.group * block_lanes + l));
         if (!grid_.meet(p, q)) continue;
         int& n = number[at(p.cell) * at(kinds) + at(block.kind)];
         if (n < 0) {
@@ -201,7 +200,7 @@ void CoarseSpace::bundle() {
         for (int k = 0; k < cell.count; ++k) w[k] -= v[k];
         add_square(cell.count, w, 1, bundles_[at(n)].weights.data());
         ++bundles_[at(n)].count;
-        bundle_[(set.first_block + b) * lanes + at(l)] = n;
+        bundle_[(set.first_block + b) * block_lanes + at(l)] = n;
       }
     }
   }
@@ -212,7 +211,7 @@ void CoarseSpace::bundle() {
 void CoarseSpace::add_couplings(const SpringHessian& couplings, const Set& set, std::size_t part,
                                 Sums& sums) const {
   constexpr std::size_t batch = 16;
-  float sx[batch * lanes], sy[batch * lanes], sz[batch * lanes], t[batch * lanes];
+  float sx[batch * block_lanes], sy[batch * block_lanes], sz[batch * block_lanes], t[batch * block_lanes];
   const EliminationOrder& pattern = couplings.pattern();
   const auto [begin, end] = share(part, pattern.block_count());
   for (std::size_t b = begin; b < end; b += batch) {
@@ -220,10 +219,10 @@ void CoarseSpace::add_couplings(const SpringHessian& couplings, const Set& set, 
     couplings.load(b, count, sx, sy, sz, t);
     for (std::size_t k = 0; k < count; ++k) {
       const EliminationOrder::Block& block = pattern.blocks()[b + k];
-      const int* const bundle = bundle_.data() + (set.first_block + b + k) * lanes;
-      for (int l = 0; l < lanes; ++l) {
+      const int* const bundle = bundle_.data() + (set.first_block + b + k) * block_lanes;
+      for (int l = 0; l < block_lanes; ++l) {
         if ((block.used >> l & 1) == 0) continue;
-        const std::size_t i = k * lanes + at(l);
+        const std::size_t i = k * block_lanes + at(l);
         const float plus = std::max(t[i], 0.0F);
         const Float4 s = {sx[i], sy[i], sz[i], 0};
         const Block3 matrix = {s * sx[i] + Float4{plus, 0, 0, 0}, s * sy[i] + Float4{0, plus, 0, 0},
@@ -234,7 +233,7 @@ void CoarseSpace::add_couplings(const SpringHessian& couplings, const Set& set, 
         } else {
           add_coupling(grid_, grid_matrix_,
                        point(set.begin + at(l + (l < block.cut ? block.first : block.second))),
-                       point(set.begin + at(block.group * lanes + l)), matrix, sums.half.data());
+                       point(set.begin + at(block.group * block_lanes + l)), matrix, sums.half.data());
         }
       }
     }
@@ -325,8 +324,8 @@ double CoarseSpace::correct(const float* r, Floats t) {
     for (std::size_t i = begin; i < end; ++i) {
       const BackgroundGrid::Point p = point(i);
       if (p.cell < 0) continue;
-      const float* const from = r + i / lanes * (3 * lanes) + i % lanes;
-      const Float4 value = {from[0], from[lanes], from[2 * lanes], 0};
+      const float* const from = r + i / block_lanes * (3 * block_lanes) + i % block_lanes;
+      const Float4 value = {from[0], from[block_lanes], from[2 * block_lanes], 0};
       float w[8];
       const BackgroundGrid::Cell& cell = grid_.weights(p, w);
       for (int k = 0; k < cell.count; ++k) sum[at(cell.nodes[at(k)])] += w[k] * value;

@@ -7,7 +7,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t form_grain = 4096;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ double CoupledForms::add_product(const Float4* p, Float4* y) {
   const std::size_t forms = c.vertices.size();
   const Float4* const g = gradients_.data();
   float *const along = along_.data(), *const moments = moments_.data();
-  parallel_for(forms, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(forms, form_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
       const std::array<int, 4>& v = c.vertices[e];
       const Float4* const of = g + 4 * e;
@@ -37,7 +37,7 @@ double CoupledForms::add_product(const Float4* p, Float4* y) {
       along[e] = sum[0] + sum[1] + sum[2];
     }
   });
-  const double curvature = parallel_sum(forms, grain, 0.0, [&](std::size_t begin, std::size_t end) {
+  const double curvature = parallel_sum(forms, form_grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double total = 0;
     for (std::size_t e = begin; e < end; ++e) {
       float sum = 0;
@@ -48,7 +48,7 @@ double CoupledForms::add_product(const Float4* p, Float4* y) {
     }
     return total;
   });
-  parallel_for(c.first_share.size() - 1, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(c.first_share.size() - 1, form_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       Float4 sum = {0, 0, 0, 0};
       for (int k = c.first_share[v]; k < c.first_share[v + 1]; ++k) {

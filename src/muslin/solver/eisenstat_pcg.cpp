@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
@@ -15,9 +16,7 @@ using sweep_kernels::matrix_size;
 using sweep_kernels::packed_size;
 using sweep_kernels::vector_size;
 
-constexpr std::size_t grain = 64;  // groups
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t group_grain = 64;  // groups
 
 /// Lanes without a coupling read arbitrary values and multiply them by zero: these must be finite, also after
 /// a solve that overflowed.
@@ -85,7 +84,7 @@ void EisenstatPcg::for_each_vertex(const Value* by_vertex, const Body& body) con
   for (const Part& part : parts_) {
     const EliminationOrder& pattern = part.couplings->pattern();
     const std::int64_t first = static_cast<std::int64_t>(part.couplings->first());
-    parallel_for(pattern.groups().size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(pattern.groups().size(), group_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin * lanes; i < end * lanes; ++i) {
         const int v = pattern.vertex(i), next = pattern.vertex(std::min(i + ahead, end * lanes - 1));
         if (next >= 0) __builtin_prefetch(by_vertex + first + next);

@@ -7,16 +7,15 @@
 #include <tuple>
 #include <utility>
 
+#include "muslin/core/index.hpp"
+
 namespace muslin {
 namespace {
 
-constexpr int lanes = EliminationOrder::lanes;
 constexpr int smallest_slab = 4096;  // vertices: below, threads gain nothing
 constexpr int usual_slab = 131072;   // vertices: every second border between slabs costs iterations
 constexpr int max_slabs = 64;
 constexpr int reaches_per_slab = 4;  // the layers between slabs must be thin beside the slabs
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// One slab, or an even number of them.
 int slab_count(int vertex_count, int reach) {
@@ -63,7 +62,7 @@ void gather_thin_layers(std::span<const CouplingRun> runs, int slabs, Split& spl
       std::vector<int>& vertices = split.members[at(t)];
       std::vector<Pair>& couplings = inside[at(t)];
       std::sort(couplings.begin(), couplings.end());
-      const std::size_t size = vertices.size(), wide = at(lanes) * at(depth(couplings));
+      const std::size_t size = vertices.size(), wide = at(EliminationOrder::lanes) * at(depth(couplings));
       if (size == 0 || size >= wide) continue;
       for (std::size_t begin = 0, end = 0; begin < size; begin = end) {
         do ++end;

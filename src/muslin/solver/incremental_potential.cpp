@@ -12,7 +12,7 @@
 namespace muslin {
 namespace {
 
-constexpr int chunk = 256;  // vertices whose terms are kept in the first-level cache
+constexpr int inertia_chunk = 256;  // vertices whose terms are kept in the first-level cache
 
 /// w = ½ m |x − x̃|²
 MUSLIN_VECTOR_CODE void inertia(const double* __restrict x, const double* __restrict prediction,
@@ -121,8 +121,8 @@ IncrementalPotential::Imbalance imbalance_of(const Worst& worst, double dt) {
 /// Calls body(first, n) for chunks of [begin, end).
 template <class Body>
 void for_each_chunk(std::size_t begin, std::size_t end, const Body& body) {
-  for (std::size_t v = begin; v < end; v += chunk)
-    body(v, static_cast<int>(std::min<std::size_t>(chunk, end - v)));
+  for (std::size_t v = begin; v < end; v += inertia_chunk)
+    body(v, static_cast<int>(std::min<std::size_t>(inertia_chunk, end - v)));
 }
 
 }  // namespace
@@ -144,7 +144,7 @@ IncrementalPotential::Value IncrementalPotential::value(ConstVectors x) const {
   const double inertial = parallel_sum(size(), vector_grain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for_each_chunk(begin, end, [&](std::size_t v, int n) {
-      alignas(64) double w[chunk];
+      alignas(64) double w[inertia_chunk];
       inertia(x[v].data(), prediction_[v].data(), &problem_.masses[v], n, w);
       sum += sum_of(w, n);
     });
@@ -160,7 +160,8 @@ IncrementalPotential::Inertia IncrementalPotential::add_inertia(ConstVectors x, 
   return parallel_sum(size(), vector_grain, Inertia{}, [&](std::size_t begin, std::size_t end) {
     Inertia sum;
     for_each_chunk(begin, end, [&](std::size_t v, int n) {
-      alignas(64) double w[chunk], along[chunk], squares[chunk], ratios[chunk];
+      alignas(64) double w[inertia_chunk], along[inertia_chunk], squares[inertia_chunk],
+          ratios[inertia_chunk];
       inertia_and_gradient(x[v].data(), prediction_[v].data(), &problem_.masses[v], &problem_.fixed[v],
                            dt_ * dt_, n, g[v].data(), w, along, squares, ratios);
       sum.value += sum_of(w, n);
@@ -234,7 +235,7 @@ IncrementalPotential::Imbalance IncrementalPotential::imbalance(ConstVectors g) 
   const Worst worst = parallel_sum(size(), vector_grain, Worst{}, [&](std::size_t begin, std::size_t end) {
     Worst of_block;
     for_each_chunk(begin, end, [&](std::size_t v, int n) {
-      alignas(64) double squares[chunk], ratios[chunk];
+      alignas(64) double squares[inertia_chunk], ratios[inertia_chunk];
       squared_accelerations(g[v].data(), &problem_.masses[v], &problem_.fixed[v], n, squares, ratios);
       of_block.consider(squares, ratios, n, v);
     });

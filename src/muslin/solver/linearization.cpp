@@ -10,7 +10,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 8192;  // vertices
+constexpr std::size_t vertex_grain = 8192;  // vertices
 /// Contact adds at most this times the mass to a diagonal block of the preconditioner. With more, float and
 /// the packed factors of sixteen vertices would lose masses.
 constexpr float max_relative = 1e5;
@@ -246,7 +246,7 @@ void Linearization::find_remainder_diagonal() {
   blocks_.assign(size(), Mat3::Zero());
   for (const General& g : generals_)
     g.potential->add_diagonal_blocks(g.x, std::span(blocks_).subspan(g.first, g.x.size()));
-  parallel_for(size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const Mat3 block = scale_ * blocks_[v];
       u.x[v] += static_cast<float>(block(0, 0));
@@ -295,7 +295,7 @@ double Linearization::add_remainder_product(const Float4* p, Float4* y) {
   if (generals_.empty()) return sum;
   p_.resize(size());
   y_.resize(size());
-  parallel_for(size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       p_[v] = Vec3(p[v][0], p[v][1], p[v][2]);
       y_[v].setZero();
@@ -305,7 +305,7 @@ double Linearization::add_remainder_product(const Float4* p, Float4* y) {
     g.potential->add_hessian_product(g.x, std::span(p_).subspan(g.first, g.x.size()),
                                      std::span(y_).subspan(g.first, g.x.size()));
   }
-  return sum + parallel_sum(size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+  return sum + parallel_sum(size(), vertex_grain, 0.0, [&](std::size_t begin, std::size_t end) {
            double part = 0;
            for (std::size_t v = begin; v < end; ++v) {
              const Vec3 f = scale_ * y_[v];

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
@@ -13,8 +14,6 @@ namespace {
 
 constexpr std::size_t direct_limit = 48;  // nodes of the coarsest level
 constexpr int sweeps_without = 8;         // there, where it has more
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 Float4 operator*(const Block3& b, const Float4& v) { return b.x * v[0] + b.y * v[1] + b.z * v[2]; }
 

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 2048;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t stiffness_grain = 2048;
 
 }  // namespace
 
@@ -46,21 +45,22 @@ void RelativeStiffness::finish() {
 }
 
 double RelativeStiffness::add_product(const Float4* p, Float4* y) {
-  const double curvature = parallel_sum(terms_.size(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t t = begin; t < end; ++t) {
-      const RelativeTerms::Term& term = terms_[t];
-      Float4 u = {0, 0, 0, 0};
-      for (int k = term.begin; k < term.end; ++k) u += weights_[at(k)].weight * p[weights_[at(k)].vertex];
-      const Float4 n = term.normal * u;
-      const Float4 force = term.tangential * u + term.difference * (n[0] + n[1] + n[2]) * term.normal;
-      const Float4 work = force * u;
-      forces_[t] = force;
-      sum += static_cast<double>(work[0] + work[1] + work[2]);
-    }
-    return sum;
-  });
-  parallel_for(vertices_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  const double curvature =
+      parallel_sum(terms_.size(), stiffness_grain, 0.0, [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t t = begin; t < end; ++t) {
+          const RelativeTerms::Term& term = terms_[t];
+          Float4 u = {0, 0, 0, 0};
+          for (int k = term.begin; k < term.end; ++k) u += weights_[at(k)].weight * p[weights_[at(k)].vertex];
+          const Float4 n = term.normal * u;
+          const Float4 force = term.tangential * u + term.difference * (n[0] + n[1] + n[2]) * term.normal;
+          const Float4 work = force * u;
+          forces_[t] = force;
+          sum += static_cast<double>(work[0] + work[1] + work[2]);
+        }
+        return sum;
+      });
+  parallel_for(vertices_.size(), stiffness_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Float4 sum = {0, 0, 0, 0};
       for (int k = offsets_[i]; k < offsets_[i + 1]; ++k)
@@ -78,7 +78,7 @@ double RelativeStiffness::add_diagonal(const float* identity, const std::uint8_t
     Largest operator+(const Largest& other) const { return {std::max(value, other.value)}; }
   };
   const auto largest =
-      parallel_sum(vertices_.size(), grain, Largest{}, [&](std::size_t begin, std::size_t end) {
+      parallel_sum(vertices_.size(), stiffness_grain, Largest{}, [&](std::size_t begin, std::size_t end) {
         Largest ratio;
         for (std::size_t i = begin; i < end; ++i) {
           Float4 x = {0, 0, 0, 0}, y = x;

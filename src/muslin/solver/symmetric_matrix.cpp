@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/core/vector_code.hpp"
 
@@ -13,9 +14,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 256;  // rows
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t row_grain = 256;  // rows
 
 using Float8 = float __attribute__((vector_size(32)));
 
@@ -73,7 +72,7 @@ void SymmetricMatrix::reset(std::shared_ptr<const SymmetricPattern> pattern, std
 
 void SymmetricMatrix::subtract(const SpringHessian& couplings, std::span<const int> slots) {
   constexpr int lanes = SpringHessian::lanes;
-  parallel_for(couplings.pattern().block_count(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(couplings.pattern().block_count(), row_grain, [&](std::size_t begin, std::size_t end) {
     float sx[lanes], sy[lanes], sz[lanes], t[lanes];
     for (std::size_t b = begin; b < end; ++b) {
       couplings.load(b, 1, sx, sy, sz, t);
@@ -88,7 +87,7 @@ void SymmetricMatrix::subtract(const SpringHessian& couplings, std::span<const i
       }
     }
   });
-  parallel_for(pattern_->vertex_count(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(pattern_->vertex_count(), row_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       Float4 sum[3] = {};
       for (int k = pattern_->first()[v] + 1; k < pattern_->first()[v + 1]; ++k)
@@ -105,13 +104,13 @@ void SymmetricMatrix::subtract(const SpringHessian& couplings, std::span<const i
 }
 
 double SymmetricMatrix::add_product(const Float4* p, Float4* y) const {
-  return parallel_sum(pattern_->vertex_count(), grain, 0.0, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(pattern_->vertex_count(), row_grain, 0.0, [&](std::size_t begin, std::size_t end) {
     return add_rows(*pattern_, columns_.data(), p, y, begin, end);
   });
 }
 
 void SymmetricMatrix::add_diagonal(Floats upper, Floats lower) const {
-  parallel_for(pattern_->vertex_count(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(pattern_->vertex_count(), row_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const Float4* c = block(pattern_->first()[v]);
       upper.x[v] += c[0][0];

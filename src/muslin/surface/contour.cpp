@@ -11,7 +11,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t contour_grain = 1024;
 
 /// Returns the mean of two carried points.
 void carry_mean(const Embedding& from, int a, int b, Embedding& to, std::size_t at) {
@@ -36,10 +36,10 @@ void carry_mean(const Embedding& from, int a, int b, Embedding& to, std::size_t 
 /// Returns the largest value(i), 0 ≤ i < count.
 template <class Value>
 double largest(std::size_t count, const Value& value) {
-  std::vector<double> partial((count + grain - 1) / grain, 0);
-  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> partial((count + contour_grain - 1) / contour_grain, 0);
+  parallel_for(count, contour_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      partial[begin / grain] = std::max(partial[begin / grain], value(i));
+      partial[begin / contour_grain] = std::max(partial[begin / contour_grain], value(i));
   });
   return partial.empty() ? 0 : *std::max_element(partial.begin(), partial.end());
 }
@@ -79,7 +79,7 @@ Contour build_contour(const Lattice& lattice, const Mesh& solid, const SignedDis
   contour.mesh.positions.resize(count);
   contour.embedding.vertices.resize(count);
   contour.embedding.weights.resize(count);
-  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, contour_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto& [a, b] = manifold.sources[v];
       contour.mesh.positions[v] =

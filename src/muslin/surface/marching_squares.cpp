@@ -8,7 +8,7 @@
 namespace muslin {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t square_grain = 1024;
 
 /// The plane of a flat lattice. (u, v, thin) is a right-handed system of axes.
 struct Plane {
@@ -60,9 +60,11 @@ class Squares {
   }
 
   MarchedSurface march() const {
-    std::vector<std::vector<NamedTriangle>> blocks((lattice_.voxel_count() + grain - 1) / grain);
-    parallel_for(lattice_.voxel_count(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) march_voxel(static_cast<int>(v), blocks[begin / grain]);
+    std::vector<std::vector<NamedTriangle>> blocks((lattice_.voxel_count() + square_grain - 1) /
+                                                   square_grain);
+    parallel_for(lattice_.voxel_count(), square_grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v)
+        march_voxel(static_cast<int>(v), blocks[begin / square_grain]);
     });
     MarchedSurface surface;
     const std::vector<std::uint64_t> names = number_vertices(blocks, surface.triangles);

@@ -122,7 +122,7 @@ const schema::Table& mesh_table() {
   return table;
 }
 
-schema::Table declared() {
+schema::Table declare_collider() {
   const std::vector<schema::Variant> variants = {{name_of(Shape::plane), "", plane_table},
                                                  {name_of(Shape::sphere), "", sphere_table},
                                                  {name_of(Shape::capsule), "", capsule_table},
@@ -168,7 +168,7 @@ schema::Table declared() {
 }  // namespace
 
 const schema::Table& collider_table() {
-  static const schema::Table table = declared();
+  static const schema::Table table = declare_collider();
   return table;
 }
 
