@@ -31,7 +31,7 @@ std::vector<schema::Key> placed_keys() {
   };
 }
 
-schema::Table declared() {
+schema::Table declare_body() {
   std::vector<std::string> models;
   std::vector<schema::Variant> variants;
   std::string meaning;
@@ -55,7 +55,7 @@ schema::Table declared() {
 }  // namespace
 
 const schema::Table& body_table() {
-  static const schema::Table table = declared();
+  static const schema::Table table = declare_body();
   return table;
 }
 

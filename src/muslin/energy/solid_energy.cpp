@@ -14,7 +14,7 @@ namespace {
 
 using Tetrahedra = std::vector<std::array<int, 4>>;
 
-constexpr int reaches_per_slab = 4;  // tetrahedra between slabs are computed twice: keep them few
+constexpr int tetrahedron_reaches = 4;  // tetrahedra between slabs are computed twice: keep them few
 
 std::shared_ptr<const ElementSlabs<4>> slabs_of(const Tetrahedra& tetrahedra, const Lattice& lattice) {
   int reach = 1;
@@ -23,7 +23,7 @@ std::shared_ptr<const ElementSlabs<4>> slabs_of(const Tetrahedra& tetrahedra, co
     reach = std::max(reach, *most - *least);
   }
   const int count = static_cast<int>(lattice.vertex_count());
-  const int smallest = std::min(reaches_per_slab * reach, std::max(1, (count + 3) / 4));
+  const int smallest = std::min(tetrahedron_reaches * reach, std::max(1, (count + 3) / 4));
   return std::make_shared<const ElementSlabs<4>>(tetrahedra, lattice.vertex_count(), smallest);
 }
 

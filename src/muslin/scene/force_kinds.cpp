@@ -11,7 +11,7 @@
 namespace muslin {
 namespace {
 
-schema::Table declared() {
+schema::Table declare_force() {
   std::vector<std::string> types, quoted;
   std::vector<schema::Variant> variants;
   for (const ForceKind& kind : force_kinds()) {
@@ -49,7 +49,7 @@ const ForceKind& kind_of(const ForceSettings& force) {
 }
 
 const schema::Table& force_table() {
-  static const schema::Table table = declared();
+  static const schema::Table table = declare_force();
   return table;
 }
 
