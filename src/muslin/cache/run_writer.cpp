@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "muslin/cache/contact_record.hpp"
 #include "muslin/cache/directory_lock.hpp"
 #include "muslin/cache/point_cache.hpp"
 #include "muslin/cache/run_files.hpp"
@@ -412,6 +413,7 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
   for (std::string& warning : warnings_of(quality)) warnings.push_back(std::move(warning));
   run["warnings"] = warnings;
   if (simulation.options().allow_tangled) run["allow_tangled"] = true;
+  run["contact"] = model.contact ? contact_record_json(*model.contact) : Json();
   run["scene"] = parsed_scene(model);
   run["machine"] = {{"processor", processor()},
                     {"cores", std::thread::hardware_concurrency()},
