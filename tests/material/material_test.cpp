@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/material/estimates.hpp"
 
 namespace muslin {
 namespace {
@@ -88,6 +89,20 @@ TEST(MaterialFile, WrongFilesAreErrorsAtTheirPlace) {
   EXPECT_THAT(message("[lattice]\nedge_modulus = 1\n"), HasSubstr("has no `density`"));
   EXPECT_THAT(message("name = 'x'\n"), HasSubstr("no table [lattice] or [shell]"));
   EXPECT_THAT(message("[lattice"), HasSubstr("m.toml:1:"));
+}
+
+TEST(MaterialFile, EstimatedNumbersAreThoseOfTheFile) {
+  const std::string numbers = "[shell]\nareal_density = 1\nmembrane_warp = 1\nbending_warp = 1\n";
+  const auto names = [&](const std::string& list) {
+    return estimated_numbers(parse_toml("estimated = " + list + "\n" + numbers, "m.toml"));
+  };
+  EXPECT_EQ(names("['shell.bending_warp', 'shell.areal_density']"),
+            (std::vector<std::string>{"shell.bending_warp", "shell.areal_density"}));
+  EXPECT_TRUE(estimated_numbers(parse_toml(numbers, "m.toml")).empty());
+  EXPECT_THAT(message("estimated = ['shell.bending_wrap']\n" + numbers),
+              HasSubstr("m.toml:1:14: `shell.bending_wrap` is no number of this material file; did you mean "
+                        "`shell.bending_warp`?"));
+  EXPECT_THAT(message("estimated = 'all'\n" + numbers), HasSubstr("`estimated` is not a list"));
 }
 
 TEST(MaterialFile, AMissingFileIsAFileError) {

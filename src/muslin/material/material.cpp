@@ -2,6 +2,7 @@
 
 #include "muslin/core/nearest_name.hpp"
 #include "muslin/core/toml_table.hpp"
+#include "muslin/material/estimates.hpp"
 #include "muslin/material/library.hpp"
 #include "muslin/material/material_table.hpp"
 #include "muslin/schema/declare.hpp"
@@ -41,12 +42,15 @@ void read_reference(const schema::Key& key, const TomlTable& file, Material& mat
 
 /// A material file. The library writes none.
 const schema::Table& file_table() {
+  const auto unread = [](const schema::Key&, const TomlTable&, Material&) {};  // by estimated_numbers
   const auto unwritten = [](const schema::Key&, const Material&, TomlValue&) {};
   static const schema::Table table = schema::table_of<Material>(
       "material file",
       {schema::text("name", &Material::name).otherwise("the file's name").means("name in messages"),
        schema::text("description", &Material::description).means("what it is, in a sentence"),
        schema::text("source", &Material::source).means("where its numbers come from"),
+       schema::custom<Material>("estimated", {schema::Type::text}, unread, unwritten)
+           .means("the numbers that are estimates, such as `shell.bending_warp`"),
        schema::custom<Material>("lattice", {schema::Type::table}, read_lattice, unwritten)
            .means("its numbers as a lattice"),
        schema::nested("shell", &Material::shell, shell_material_table).means("its numbers as a shell"),
@@ -84,6 +88,7 @@ Material parse_material(std::string_view text, const std::string& file) {
   material.name = std::filesystem::path(file).stem().string();
   material.has_lattice = false;
   file_table().read(top, material);
+  estimated_numbers(root);  // refuses names that are no numbers
   if (!material.has_lattice && !material.shell) {
     throw Error(
         ErrorKind::input, Place{file, 0, 0}, "the material file has no table [lattice] or [shell]",
