@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/scenes.hpp"
+#include "support/markup.hpp"
 #include <gmock/gmock.h>
 
 #include "muslin/core/error.hpp"
@@ -30,29 +31,6 @@ Plot line(std::vector<double> x, std::vector<double> y) {
   return plot;
 }
 
-/// Tags open and close in order, and attributes and text hold no bare markup.
-bool well_formed(const std::string& xml) {
-  std::vector<std::string> open;
-  std::size_t at = xml.find("?>");
-  if (at == std::string::npos) return false;
-  while ((at = xml.find('<', at)) != std::string::npos) {
-    const std::size_t end = xml.find('>', at);
-    if (end == std::string::npos || xml.find('<', at + 1) < end) return false;
-    const std::string tag = xml.substr(at + 1, end - at - 1);
-    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0) return false;
-    if (tag.front() == '/') {
-      if (open.empty() || open.back() != tag.substr(1)) return false;
-      open.pop_back();
-    } else if (tag.back() != '/') {
-      open.push_back(tag.substr(0, tag.find_first_of(" \n")));
-    }
-    at = end;
-  }
-  for (at = 0; (at = xml.find('&', at)) != std::string::npos; ++at)
-    if (xml.find(';', at) > at + 5) return false;
-  return open.empty();
-}
-
 TEST(Ticks, StepsAreOneTwoOrFive) {
   EXPECT_THAT(round_ticks(0, 10, 5).labels, ElementsAre("0", "2", "4", "6", "8", "10"));
   EXPECT_THAT(round_ticks(-0.3, 0.31, 6).labels,
@@ -68,10 +46,10 @@ TEST(Plot, SvgIsWellFormedAndEscapesText) {
   Plot plot = line({0, 1, 2}, {1, 4, 9});
   plot.title = "a < b & \"c\"\n";
   const std::string text = plot_svg(plot);
-  EXPECT_TRUE(well_formed(text)) << text;
+  EXPECT_TRUE(test::is_well_formed(text)) << text;
   EXPECT_NE(text.find("a &lt; b &amp; &quot;c&quot;</text>"), std::string::npos);
   EXPECT_NE(text.find("time [s]"), std::string::npos);
-  EXPECT_FALSE(well_formed("<?xml?><a><b></a>"));
+  EXPECT_FALSE(test::is_well_formed("<?xml?><a><b></a>"));
 }
 
 TEST(Plot, GapsWhereNumbersAreMissing) {
@@ -79,8 +57,8 @@ TEST(Plot, GapsWhereNumbersAreMissing) {
   const std::string text = plot_svg(line({0, 1, 2, 3, 4}, {1, 2, nan, 3, INFINITY}));
   EXPECT_EQ(text.find("nan"), std::string::npos);
   EXPECT_EQ(text.find("inf"), std::string::npos);
-  EXPECT_TRUE(well_formed(plot_svg(line({}, {}))));
-  EXPECT_TRUE(well_formed(plot_svg(line({1}, {nan}))));
+  EXPECT_TRUE(test::is_well_formed(plot_svg(line({}, {}))));
+  EXPECT_TRUE(test::is_well_formed(plot_svg(line({1}, {nan}))));
 }
 
 TEST(Plot, PixelsRiseWithTheCurve) {

@@ -3,37 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string_view>
 
 #include <fmt/format.h>
 
+#include "muslin/core/markup.hpp"
 #include "muslin/render/colour.hpp"
 
 namespace muslin {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20) out += c;  // XML 1.0 has no control characters
-    }
-  }
-  return out;
-}
 
 std::string paint(const char* attribute, const Ink& ink) {
   const auto c = bytes_of_srgb(ink.colour);
@@ -67,7 +44,7 @@ struct SvgWriter {
                        text.at.x(), text.at.y(), text.size, anchor, paint("fill", text.ink));
     if (text.bold) out += " font-weight=\"600\"";
     if (text.turned) out += fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", text.at.x(), text.at.y());
-    out += fmt::format(">{}</text>\n", escaped(text.text));
+    out += fmt::format(">{}</text>\n", escaped_markup(text.text));
   }
 };
 
@@ -98,7 +75,7 @@ std::string svg(const Figure& figure) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" "
       "role=\"img\">\n<title>{2}</title>\n",
-      figure.width, figure.height, escaped(figure.title));
+      figure.width, figure.height, escaped_markup(figure.title));
   for (const auto& item : figure.items) std::visit(writer, item);
   return writer.out + "</svg>\n";
 }

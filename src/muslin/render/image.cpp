@@ -19,21 +19,25 @@ Image::Image(int width, int height, std::array<std::uint8_t, 3> colour) : width(
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = colour[i % 3];
 }
 
-void write_png(const std::filesystem::path& path, const Image& image) {
+std::string encode_png(const Image& image) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
-  std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(png));
+  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(png), '\0');
   png_alloc_size_t size = bytes.size();
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
     const std::string message = png.message;
     png_image_free(&png);
-    throw Error(ErrorKind::file, {path.string()}, "libpng cannot encode the picture: " + message,
-                "try a smaller picture");
+    throw Error(ErrorKind::file, "libpng cannot encode the picture: " + message, "try a smaller picture");
   }
-  write_atomically(path, {reinterpret_cast<const char*>(bytes.data()), size}, false);
+  bytes.resize(size);
+  return bytes;
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+  write_atomically(path, encode_png(image), false);
 }
 
 }  // namespace muslin

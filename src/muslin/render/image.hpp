@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace muslin {
@@ -27,6 +28,9 @@ struct Image {
     return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
   }
 };
+
+/// Returns the bytes of a PNG file. Throws Error(file) if libpng refuses the picture.
+std::string encode_png(const Image& image);
 
 /// Replaces `path` completely or not at all: the file is written beside it under another name, then renamed.
 /// Throws Error(file) if the disk is full or `path` cannot be written.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/markup.hpp"
 #include "muslin/core/output_file.hpp"
 #include "muslin/view/deflater.hpp"
 #include "muslin/view/page_content.hpp"
@@ -17,29 +18,6 @@ namespace muslin {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string escaped_for_html(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
 
 /// Returns JSON that cannot end its script element: "<" is escaped.
 std::string escaped_for_script(const Json& json) {
@@ -153,7 +131,7 @@ ViewReport write_view(const RunReader& run, const std::filesystem::path& file, c
   fitting.content.head["frames_at"] = fitting.content.arrays.size();
   fitting.content.head["notes"] = fitting.notes;
 
-  const std::string title = escaped_for_html(fitting.content.head["title"].get<std::string>());
+  const std::string title = escaped_markup(fitting.content.head["title"].get<std::string>());
   const std::string content =
       "<script id=\"run\" type=\"application/json\">" + escaped_for_script(fitting.content.head) +
       "</script>\n<script id=\"data\" type=\"text/plain\">" + base64(fitting.data) + "</script>";
