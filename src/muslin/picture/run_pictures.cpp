@@ -121,7 +121,7 @@ int RunPictures::frame_count() const { return parts_->run.frame_count(); }
 
 double RunPictures::frame_rate() const { return parts_->run.frame_rate(); }
 
-Image RunPictures::draw(int frame) {
+Image RunPictures::draw(int frame, const std::vector<Marker>& markers) {
   Parts& p = *parts_;
   std::vector<std::vector<Vec3>> positions;
   std::vector<std::vector<double>> values;
@@ -132,6 +132,7 @@ Image RunPictures::draw(int frame) {
     values.push_back(coloured ? p.stretch[b].at(positions.back()) : std::vector<double>());
   }
   for (std::size_t b = 0; b < p.bodies.size(); ++b) view.surfaces.push_back({positions[b], values[b]});
+  view.markers = markers;
   view.label = fmt::format("{}   {:.2f} s", p.run.title(), frame / p.run.frame_rate());
   return p.tracer->render(view);
 }

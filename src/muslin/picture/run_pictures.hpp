@@ -12,6 +12,7 @@
 #include "muslin/render/camera.hpp"
 #include "muslin/render/image.hpp"
 #include "muslin/render/raytrace.hpp"
+#include "muslin/render/scene_view.hpp"
 #include "muslin/scene/model.hpp"
 
 namespace muslin {
@@ -34,7 +35,8 @@ class RunPictures {
   ~RunPictures();
   int frame_count() const;
   double frame_rate() const;
-  Image draw(int frame);
+  /// `markers`: balls to show places.
+  Image draw(int frame, const std::vector<Marker>& markers = {});
 
  private:
   struct Parts;
