@@ -74,6 +74,7 @@ int run(int argc, char** argv) {
   add_field(program);
   add_render(program);
   add_view(program);
+  add_report(program);
   add_export(program);
   add_materials(program);
   add_schema(program);

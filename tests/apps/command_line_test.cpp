@@ -27,7 +27,8 @@ void expect_refusal(const Outcome& outcome, int code, const std::string& part) {
 TEST(CommandLine, HelpAndVersionSucceed) {
   Scratch scratch;
   for (const char* word : {"--help", "--version"}) EXPECT_EQ(run(scratch, {word}).code, 0);
-  for (const char* command : {"run", "check", "build", "field", "render", "export", "materials", "schema"}) {
+  for (const char* command :
+       {"run", "check", "build", "field", "render", "export", "report", "materials", "schema"}) {
     const Outcome help = run(scratch, {command, "--help"});
     EXPECT_EQ(help.code, 0) << command;
     EXPECT_THAT(run(scratch, {"--help"}).out, HasSubstr(command));

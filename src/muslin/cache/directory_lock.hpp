@@ -14,6 +14,8 @@ class DirectoryLock {
   /// the lock.
   DirectoryLock(const std::filesystem::path& directory, std::string_view name);
   ~DirectoryLock();
+  /// True if another process holds it now.
+  static bool is_held(const std::filesystem::path& directory, std::string_view name);
   DirectoryLock(DirectoryLock&& other) noexcept;
   DirectoryLock& operator=(DirectoryLock&& other) noexcept;
 

@@ -1,0 +1,153 @@
+#include "muslin/report/cached_surfaces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <fmt/format.h>
+
+#include "muslin/contact/contact_candidates.hpp"
+#include "muslin/core/error.hpp"
+#include "muslin/geometry/mesh.hpp"
+
+namespace muslin {
+namespace {
+
+std::vector<Vec3> in_double(const std::vector<Vec3f>& points) {
+  std::vector<Vec3> result;
+  for (const Vec3f& p : points) result.push_back(p.cast<double>());
+  return result;
+}
+
+/// The affine map that takes `from` to `to`, by least squares. A rigid motion is found to rounding.
+class Placement {
+ public:
+  Placement(ConstVectors from, ConstVectors to) {
+    for (std::size_t i = 0; i < from.size(); ++i) from_ += from[i], to_ += to[i];
+    from_ /= static_cast<double>(from.size());
+    to_ /= static_cast<double>(from.size());
+    Mat3 moment = Mat3::Zero(), mixed = Mat3::Zero();
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      moment += (from[i] - from_) * (from[i] - from_).transpose();
+      mixed += (to[i] - to_) * (from[i] - from_).transpose();
+    }
+    linear_ = moment.ldlt().solve(mixed.transpose()).transpose();
+  }
+  Vec3 operator()(const Vec3& point) const { return to_ + linear_ * (point - from_); }
+
+ private:
+  Vec3 from_ = Vec3::Zero(), to_ = Vec3::Zero();
+  Mat3 linear_ = Mat3::Identity();
+};
+
+/// The middle of a patch of a plane, and two points beside it on its outer side.
+std::array<Vec3, 3> points_of_plane(ConstVectors corners) {
+  const Vec3 middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+  const Vec3 across = (corners[1] - corners[0]).normalized(), up = (corners[3] - corners[0]).normalized();
+  return {middle, middle + across, middle + up};
+}
+
+}  // namespace
+
+CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record) : run_(run) {
+  std::vector<Vec3i> triangles;
+  std::vector<int> body_of_point;
+  std::vector<ContactBody> bodies;
+  std::vector<ContactPlane> planes;
+  for (const ContactRecord::Body& body : record.bodies) {
+    const int place = run.find_body(body.name), first = static_cast<int>(body_of_point.size());
+    const Mesh& skin = run.mesh(place, SurfaceKind::skin);
+    const auto owner = static_cast<int>(bodies.size());
+    std::vector<Vec3> rest = skin.positions;
+    if (!body.axis.empty()) {
+      rest = body.axis;
+      const int last = first + static_cast<int>(rest.size()) - 1;
+      triangles.emplace_back(first, last, last);
+      contact_.faces.push_back(-1);
+    } else if (run.is_plane(place)) {
+      const std::array<Vec3, 3> points = points_of_plane(skin.positions);
+      rest.assign(points.begin(), points.end());
+      ContactPlane plane;
+      plane.point = first;
+      plane.span = {first + 1, first + 2};
+      planes.push_back(plane);
+    } else {
+      if (body.points != rest.size())
+        throw Error(ErrorKind::input, {run.directory().string()},
+                    "the surface with which \"" + body.name + "\" touches others is not in the caches",
+                    "only skins can be examined");
+      const Triangulation cut = triangulate(skin);
+      for (const Vec3i& triangle : cut.triangles) triangles.emplace_back(triangle + Vec3i::Constant(first));
+      contact_.faces.insert(contact_.faces.end(), cut.faces.begin(), cut.faces.end());
+    }
+    body_of_point.resize(body_of_point.size() + rest.size(), owner);
+    contact_.rest.insert(contact_.rest.end(), rest.begin(), rest.end());
+    contact_.names.push_back(body.name);
+    ContactBody contact_body;
+    contact_body.radius = body.radius;
+    contact_body.self_contact = body.self_contact;
+    contact_body.fixed = body.fixed;
+    bodies.push_back(contact_body);
+    bodies_.push_back(body);
+    places_.push_back(place);
+  }
+  contact_.distance = record.distance;
+  contact_.map = std::make_shared<SurfaceMap>(SurfaceMap::identity(contact_.rest.size()));
+  contact_.surface = std::make_shared<ContactSurface>(std::move(triangles), std::move(body_of_point),
+                                                      std::move(bodies), std::move(planes));
+}
+
+std::vector<Vec3> CachedSurfaces::points(int frame) const {
+  std::vector<Vec3> all;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const std::vector<Vec3> skin = in_double(run_.points(places_[b], SurfaceKind::skin, frame));
+    if (run_.is_plane(places_[b])) {
+      const std::array<Vec3, 3> points = points_of_plane(skin);
+      all.insert(all.end(), points.begin(), points.end());
+    } else if (bodies_[b].axis.empty()) {
+      all.insert(all.end(), skin.begin(), skin.end());
+    } else {
+      const Placement moved(run_.mesh(places_[b], SurfaceKind::skin).positions, skin);
+      for (const Vec3& point : bodies_[b].axis) all.push_back(moved(point));
+    }
+  }
+  return all;
+}
+
+std::vector<Crossing> CachedSurfaces::crossings(ConstVectors points) const {
+  std::vector<Crossing> found = find_crossings(contact_, points);
+  std::erase_if(found, [&](const Crossing& c) {
+    const auto is_round = [&](int body) { return !bodies_[static_cast<std::size_t>(body)].axis.empty(); };
+    return c.kind == Crossing::Kind::too_close && !is_round(c.first_body) && !is_round(c.second_body);
+  });
+  return one_of_each_pair(contact_, found);
+}
+
+std::optional<Gap> CachedSurfaces::smallest_gap(ConstVectors points) const {
+  const ContactSurface& surface = *contact_.surface;
+  ContactCandidates candidates(contact_.surface, contact_.rest, contact_.distance);
+  candidates.update(points, points, 0);
+  std::optional<Gap> smallest;
+  for (const ContactPair& pair : candidates.pairs()) {
+    const PairGeometry geometry = pair_geometry(surface, pair, points);
+    const double size = geometry.distance - pair.thickness;
+    if (size >= (smallest ? smallest->size : contact_.distance)) continue;
+    const auto count = static_cast<std::size_t>(pair.point_count());
+    const auto size_of_first = static_cast<std::size_t>(first_feature_size(pair.kind));
+    const int first = pair.points[0], second = pair.points[count - 1];
+    const bool second_is_thinner =
+        pair.kind != PairKind::point_plane && surface.radius_of(second) < surface.radius_of(first);
+    const auto [a, b] = std::minmax({surface.body_of(first), surface.body_of(second)});
+    Gap gap{size, contact_.names[static_cast<std::size_t>(a)], contact_.names[static_cast<std::size_t>(b)],
+            Vec3::Zero()};
+    for (std::size_t i = second_is_thinner ? size_of_first : 0;
+         i < (second_is_thinner ? count : size_of_first); ++i)
+      gap.at += std::abs(geometry.weights[i]) * points[static_cast<std::size_t>(pair.points[i])];
+    smallest = gap;
+  }
+  return smallest;
+}
+
+}  // namespace muslin
