@@ -3,6 +3,7 @@
 import csv
 import json
 import subprocess
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -242,6 +243,23 @@ def test_a_page_for_browsers(finished, tmp_path):
     for size in (0, -1, float("nan")):
         with pytest.raises(muslin.UsageError):
             muslin.write_view(muslin.Run(finished), tmp_path / "flag.html", max_size=size)
+
+
+def test_a_report_says_what_was_kept(finished, tmp_path):
+    seen = []
+    run = muslin.Run(finished)
+    report = muslin.write_report(run, tmp_path / "flag.html", json=tmp_path / "flag.json", junit=tmp_path / "flag.xml",
+                                 pictures=False, progress=lambda fraction, stage: seen.append(stage))
+    assert report == json.loads((tmp_path / "flag.json").read_text())
+    assert report["run"]["frames"] == 9 and report["verdict"]["broken"] == 0
+    assert {p["key"] for p in report["promises"]} >= {"complete", "energy_closes", "nothing_crosses"}
+    assert (tmp_path / "flag.html").read_text().startswith("<!doctype html>")
+    suite = ElementTree.parse(tmp_path / "flag.xml").getroot()[0]
+    assert suite.get("failures") == "0" and len(suite) == int(suite.get("tests")) == len(report["promises"])
+    assert "looking for crossings" in seen
+    assert muslin.write_report(run)["promises"] == report["promises"]
+    with pytest.raises(muslin.Interrupted):
+        muslin.write_report(run, cancel=lambda: True)
 
 
 def test_a_shell_has_neither_contour_nor_lattice(tmp_path):
