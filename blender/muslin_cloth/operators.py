@@ -4,9 +4,11 @@ import bpy
 from bpy.types import Operator
 
 from . import bake_state as bs
-from . import playback
+from . import playback, worker
+from .advice import problem_line
 from .gather import Problem, depsgraph_of, measure, snapshot, suggestion
-from .session import session_of, start_clock, wait
+from .preferences import find_program
+from .session import baking, session_of, start_clock, wait
 
 
 class SessionOperator(Operator):
@@ -116,6 +118,32 @@ class MUSLIN_OT_check(Operator):
         return {"FINISHED"}
 
 
+class MUSLIN_OT_report(Operator):
+    bl_idname = "muslin.report"
+    bl_label = "Report"
+    bl_description = "Examine the bake and open its certificate in the browser: numbers, sources, a verdict per promise"
+
+    @classmethod
+    def poll(cls, context):
+        session = baking(context.scene) if context.scene else None
+        return session is not None and session.state.frame >= 0
+
+    def execute(self, context):
+        program, run = find_program(), session_of(context.scene).folder / "run"
+        if not program:
+            self.report({"ERROR"}, "The program muslin was not found: set its place in Preferences > Add-ons > "
+                                   "Muslin Cloth")
+            return {"CANCELLED"}
+        page = run / "report.html"
+        code, _, err = worker.ask(program, "report", str(run), "-o", str(page), "--quiet")
+        if code != 0:
+            self.report({"ERROR"}, problem_line(err))
+            return {"CANCELLED"}
+        if not bpy.app.background:
+            bpy.ops.wm.url_open(url=page.resolve().as_uri())
+        return {"FINISHED"}
+
+
 def is_mesh(context):
     return context.object is not None and context.object.type == "MESH"
 
@@ -182,7 +210,8 @@ class MUSLIN_OT_suggest_width(RoleOperator):
 
 
 CLASSES = (MUSLIN_OT_bake, MUSLIN_OT_bake_from_current, MUSLIN_OT_resume, MUSLIN_OT_cancel, MUSLIN_OT_free,
-           MUSLIN_OT_check, MUSLIN_OT_cloth_add, MUSLIN_OT_collider_add, MUSLIN_OT_remove, MUSLIN_OT_suggest_width)
+           MUSLIN_OT_check, MUSLIN_OT_report, MUSLIN_OT_cloth_add, MUSLIN_OT_collider_add, MUSLIN_OT_remove,
+           MUSLIN_OT_suggest_width)
 
 
 def register():

@@ -115,6 +115,7 @@ def draw_buttons(layout, context, state):
     baked.operator("muslin.bake_from_current", icon="TRACKING_FORWARDS_SINGLE")
     row = column.row(align=True)
     row.operator("muslin.check", icon="VIEWZOOM")
+    row.operator("muslin.report", icon="TEXT")
     free = row.row(align=True)
     free.enabled = state.frame >= 0
     free.operator("muslin.free", icon="TRASH")

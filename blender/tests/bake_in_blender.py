@@ -1,5 +1,6 @@
 """Bakes in a real Blender, without a window: playback equals the cache, cancel, resume, kill, undo, reopen."""
 
+import json
 import os
 import pathlib
 import signal
@@ -27,6 +28,15 @@ class Baking(HostTest):
         held = [v.index for v in obj.data.vertices if v.groups]
         self.assertLess(np.abs(points(obj, 6)[held] - start[held]).max(), 1e-6)
         self.assertTrue(obj.modifiers["Muslin"].filepath.startswith("//"))
+
+    def test_report_of_a_bake(self):
+        cloth(grid())
+        self.assertFalse(bpy.ops.muslin.report.poll())
+        bpy.ops.muslin.bake()
+        bpy.ops.muslin.report()
+        run = session().folder / "run"
+        self.assertIn("Certificate of a run", (run / "report.html").read_text(encoding="utf-8"))
+        self.assertEqual(json.loads((run / "report.json").read_text(encoding="utf-8"))["verdict"]["broken"], 0)
 
     def test_any_transform_and_unit(self):
         """Turned, scaled by axis, mirrored, below a parent that moves, in centimetres: in the world nothing slips."""
