@@ -37,5 +37,5 @@ NB_MODULE(_muslin, m) {
   bind_simulation(m);
   bind_run(m);
   bind_picture(m);
-  bind_report(m);
+  bind_run_report(m);
 }

@@ -34,7 +34,7 @@ JsonObject write(const RunReader& run, const ReportFiles& files, const Report& p
 
 }  // namespace
 
-void bind_report(nb::module_& m) {
+void bind_run_report(nb::module_& m) {
   using Path = std::optional<FilePath>;
   m.def(
       "write_report",

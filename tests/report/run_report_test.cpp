@@ -236,6 +236,18 @@ TEST(RunReport, TakesRunsThatAreNotFinished) {
   }
 }
 
+TEST(RunReport, NamesFramesThatTheTableLacks) {
+  Scratch scratch;
+  const auto run = run_sheet(scratch);
+  std::string table = bytes_of(run / "diagnostics.csv");
+  const std::size_t second = table.find("\n1,") + 1;
+  test::write_bytes(run / "diagnostics.csv", table.erase(second, table.find('\n', second) + 1 - second));
+  const RunReport report = report_on(run);
+  EXPECT_EQ(promise(report, "complete").verdict, Verdict::broken);
+  EXPECT_THAT(promise(report, "complete").finding, HasSubstr("3 of 4 frames are there"));
+  EXPECT_THAT(promise(report, "complete").frames, ElementsAre(1, 2));
+}
+
 TEST(RunReport, TakesRunsOfEarlierVersions) {
   Scratch scratch;
   const auto run = run_sheet(scratch);

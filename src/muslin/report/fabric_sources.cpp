@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the scene file says, before --set.
+/// The scene as its file has it, before --set.
 struct WrittenScene {
   TomlValue text;
   Json resolved;  ///< null if the scene cannot be read here, as its material files are elsewhere

@@ -14,7 +14,7 @@ bool is_given(const Json& table, const char* key) {
   return table.contains(key) && !table[key].is_null() && table[key] != Json("");
 }
 
-/// Why the momentum depends on impulses that are not recorded; empty if it does not.
+/// Returns the reason why the momentum depends on impulses that are not recorded; empty if it does not.
 std::string unknown_impulses(const RunReader& run, const Json& scene) {
   if (!scene.is_object()) return "the scene of the run is not recorded";
   if (!json_list(scene, "pin").empty()) return "pins push on the bodies, and their impulses are not recorded";

@@ -195,8 +195,11 @@ class Judge {
       set(p, true, fmt::format("No crossing in {}, every pair tested.", searched));
     else
       set(p, false,
-          fmt::format("Surfaces cross in {}, in up to {} at once: {}.", in_frames(p), counted(most, "place"),
-                      evidence_.crossing_frames.front().places.front()));
+          fmt::format("Surfaces cross in {}, in up to {} at once: {}.{}", in_frames(p),
+                      counted(most, "place"), evidence_.crossing_frames.front().places.front(),
+                      evidence_.summary.value("allow_tangled", false)
+                          ? " The run was allowed to start with crossings."
+                          : ""));
     return p;
   }
 

@@ -95,15 +95,16 @@ void find_places(const RunReader& run, const CachedSurfaces* surfaces, RunEviden
   const auto narrowest = std::min_element(
       rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.min_distance < b.min_distance; });
   if (std::isfinite(narrowest->min_distance) && surfaces != nullptr) {
-    evidence.frame_of_gap = narrowest->frame;
-    if (is_usable(evidence, narrowest->frame))
-      evidence.gap = surfaces->smallest_gap(surfaces->points(narrowest->frame));
+    const int frame = static_cast<int>(narrowest - rows.begin());
+    evidence.frame_of_gap = frame;
+    if (is_usable(evidence, frame)) evidence.gap = surfaces->smallest_gap(surfaces->points(frame));
   }
   const auto longest = std::max_element(
       rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.max_stretch < b.max_stretch; });
-  evidence.frame_of_stretch = longest->frame;
-  if (!is_usable(evidence, longest->frame)) return;
-  const std::optional<StretchPlace> place = find_largest_stretch(run, longest->frame);
+  const int frame = static_cast<int>(longest - rows.begin());
+  evidence.frame_of_stretch = frame;
+  if (!is_usable(evidence, frame)) return;
+  const std::optional<StretchPlace> place = find_largest_stretch(run, frame);
   if (place && std::abs(place->ratio - longest->max_stretch) <= same_stretch * longest->max_stretch)
     evidence.stretch = place;
 }

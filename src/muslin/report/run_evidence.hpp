@@ -18,7 +18,7 @@
 
 namespace muslin {
 
-/// What was found in a frame whose surfaces cross.
+/// A frame in which surfaces cross.
 struct CrossingFrame {
   int frame = 0;
   std::size_t count = 0;            ///< pairs of faces, points in balls and beneath planes included
@@ -37,7 +37,7 @@ struct RunEvidence {
   bool has_stretch_limits = false;
 
   std::vector<int> frames_not_finite;  ///< in which a cached position is not a number
-  /// Whether, and why not, the caches were searched for crossings.
+  /// True if the caches were searched for crossings; otherwise the reason is below.
   bool searched = false;
   std::string why_not_searched;
   std::size_t triangles_searched = 0;  ///< of each frame
