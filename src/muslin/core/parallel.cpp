@@ -15,8 +15,8 @@ namespace {
 
 std::unique_ptr<tbb::global_control> limit;
 
-// oneTBB is not built for the thread sanitizer. This file, which contains oneTBB's loop, is left out of it, and
-// tells it that a loop begins before its blocks and ends after them.
+// oneTBB is not built for the thread sanitizer. This file, which contains oneTBB's loop, is left out of it,
+// and tells it that a loop begins before its blocks and ends after them.
 #if defined(MUSLIN_THREAD_SANITIZER)
 void order_before(char& place) { __tsan_release(&place); }
 void order_after(char& place) { __tsan_acquire(&place); }

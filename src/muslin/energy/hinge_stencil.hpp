@@ -252,9 +252,9 @@ class HingeStencil {
   }
 
   /// Adds scale · curvature ∇θ∇θᵀ, likewise.
-  MUSLIN_VECTOR_CODE static inline void add_squares(const double* curvature, const Batch<4>& gradient,
-                                                    double scale, int count, const unsigned* rows,
-                                                    const ElementSlabs<4>::Slots* slots, Float4* blocks) {
+  MUSLIN_VECTOR_CODE static void add_squares(const double* curvature, const Batch<4>& gradient, double scale,
+                                             int count, const unsigned* rows,
+                                             const ElementSlabs<4>::Slots* slots, Float4* blocks) {
     float d[4][3][element_lanes];
     for (int l = 0; l < element_lanes; ++l) {
       const double root = std::sqrt(scale * curvature[l]);

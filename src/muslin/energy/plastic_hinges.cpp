@@ -74,7 +74,7 @@ class PlasticHinges::Energy : public Elements<HingeStencil, PlasticHingeLaw> {
   std::vector<Constants> constants_;  // by hinge
 };
 
-PlasticHinges::PlasticHinges(std::string name, const Shell& shell, const BendingModuli& moduli,
+PlasticHinges::PlasticHinges(const std::string& name, const Shell& shell, const BendingModuli& moduli,
                              const YieldLimit& limit, std::shared_ptr<const SymmetricPattern> pattern)
     : plastic_name_(name + ".plastic_angle"), slip_name_(name + ".slip"), count_(shell.hinges.size()) {
   require(limit.angle >= 0 && limit.hardening >= 0, "a yield angle or hardening is negative",

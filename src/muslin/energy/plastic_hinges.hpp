@@ -37,8 +37,8 @@ class PlasticHinges : public Load {
  public:
   /// `name` is unique among the loads of a run and names the hinges' arrays in the history. `pattern` is the
   /// shell's block_pattern, or null. Errors: usage, if a modulus or the limit is negative.
-  PlasticHinges(std::string name, const Shell& shell, const BendingModuli& moduli, const YieldLimit& limit,
-                std::shared_ptr<const SymmetricPattern> pattern = nullptr);
+  PlasticHinges(const std::string& name, const Shell& shell, const BendingModuli& moduli,
+                const YieldLimit& limit, std::shared_ptr<const SymmetricPattern> pattern = nullptr);
   ~PlasticHinges() override;
 
   std::unique_ptr<Potential> potential(const StepContext& step) const override;

@@ -86,6 +86,7 @@ SolidSprings::SolidSprings(const Lattice& lattice, double youngs_modulus) {
 void SolidSprings::linearize(ConstVectors x, const std::shared_ptr<const SymmetricPattern>& pattern,
                              HessianSink& into, std::size_t first) const {
   std::vector<CentralSpring> kinds;
+  kinds.reserve(stiffness_.size());
   for (const double k : stiffness_) kinds.push_back({static_cast<float>(into.scale() * k), 0});
   into.stand_in(pattern, network_, kinds, x, first);
 }

@@ -136,10 +136,11 @@ std::string print_field(const Mesh& mesh, const FieldPrintSettings& settings) {
   const auto column_count = static_cast<std::size_t>(columns.count);
   const auto count = column_count * static_cast<std::size_t>(rows.count);
   const auto position = [&](std::size_t sample) {
+    const std::size_t row = sample / column_count;
     Vec3 p;
     p[slice.axis] = slice.value;
     p[across] = width * (columns.first + static_cast<double>(sample % column_count));
-    p[upward] = width * (rows.first + rows.count - 1 - static_cast<double>(sample / column_count));
+    p[upward] = width * (rows.first + rows.count - 1 - static_cast<double>(row));
     return p;
   };
   std::vector<double> values(count);
