@@ -34,6 +34,11 @@ TEST(EnergyTurnover, TellsWhatResidualsExplainFromWhatTheyDoNot) {
   EXPECT_DOUBLE_EQ(lost.account_error, 1);
 }
 
+TEST(EnergyTurnover, IgnoresNoiseOfABodyAtRest) {
+  const EnergyTurnover energy = measure_turnover(std::vector{row(0, 0, 7, 0), row(1, 1e-14, 7, 1e-14)});
+  EXPECT_EQ(energy.share(), 0);
+}
+
 TEST(EnergyTurnover, OfNothingIsNothing) {
   EXPECT_EQ(measure_turnover({}).share(), 0);
   EXPECT_EQ(measure_turnover(std::vector{row(0, 0, 0, 0)}).share(), 0);

@@ -166,6 +166,16 @@ TEST(RunReport, NamesFramesThatAreNotFinite) {
   EXPECT_EQ(promise(report, "nothing_crosses").verdict, Verdict::kept);
 }
 
+TEST(RunReport, NamesFramesWhoseEnergyIsNotANumber) {
+  Scratch scratch;
+  const auto run = run_sheet(scratch);
+  const std::string table = bytes_of(run / "diagnostics.csv");
+  const std::size_t kinetic = table.find(',', table.find("\n2,") + 3) + 1;
+  test::write_bytes(run / "diagnostics.csv",
+                    table.substr(0, kinetic) + "nan" + table.substr(table.find(',', kinetic)));
+  EXPECT_THAT(promise(report_on(run), "finite").frames, ElementsAre(2));
+}
+
 TEST(RunReport, HoldsMomentumAgainstTheImpulseOfGravity) {
   Scratch scratch;
   const auto run = run_sheet(scratch, test::gravity);
@@ -177,6 +187,8 @@ TEST(RunReport, HoldsMomentumAgainstTheImpulseOfGravity) {
   EXPECT_EQ(promise(fall, "gaps_stay_open").verdict, Verdict::not_measured);
   test::replace_in(run / "stats.json", "\"mass\": 0.05", "\"mass\": 0.06");
   EXPECT_EQ(promise(report_on(run), "momentum_is_consistent").verdict, Verdict::broken);
+  // Nothing moves a sheet without gravity.
+  EXPECT_EQ(promise(report_on(run_sheet(scratch, "")), "momentum_is_consistent").verdict, Verdict::kept);
 }
 
 TEST(RunReport, JudgesWhatTheTablesSay) {

@@ -7,7 +7,7 @@ namespace muslin {
 
 double EnergyTurnover::share() const {
   const double defect = std::max(std::abs(unbalanced), account_error);
-  return defect > 0 ? defect / turned_over : 0;
+  return defect > rounding ? defect / turned_over : 0;
 }
 
 EnergyTurnover measure_turnover(std::span<const Diagnostics> rows) {
@@ -21,12 +21,13 @@ EnergyTurnover measure_turnover(std::span<const Diagnostics> rows) {
       result.frame_of_unbalanced = row.frame;
     }
     result.account_error = std::max(result.account_error, std::abs(constant(row) - constant(rows[0])));
-    if (i == 0) continue;
-    const Diagnostics& before = rows[i - 1];
+    const Diagnostics& before = rows[i == 0 ? 0 : i - 1];
     for (double Diagnostics::* account :
          {&Diagnostics::kinetic, &Diagnostics::elastic, &Diagnostics::potential, &Diagnostics::work,
-          &Diagnostics::dissipated})
+          &Diagnostics::dissipated}) {
       result.turned_over += std::abs(row.*account - before.*account) / 2;
+      result.rounding = std::max(result.rounding, 1e-9 * std::abs(row.*account));
+    }
   }
   return result;
 }

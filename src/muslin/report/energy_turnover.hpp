@@ -14,10 +14,11 @@ struct EnergyTurnover {
   double turned_over = 0;
   double unbalanced = 0;  ///< the largest work of residuals since the start, by magnitude
   int frame_of_unbalanced = 0;
-  double account_error =
-      0;  ///< the largest difference of the sum of accounts from what the residuals explain
+  /// The largest change of the sum of accounts that residuals do not explain.
+  double account_error = 0;
+  double rounding = 0;  ///< 1e-9 of the largest account: smaller defects are noise
 
-  /// Returns the larger defect over the energy turned over; 0 where nothing moved.
+  /// Returns the larger defect over the energy turned over; 0 if it is noise.
   double share() const;
 };
 EnergyTurnover measure_turnover(std::span<const Diagnostics> rows);

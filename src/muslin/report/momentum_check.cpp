@@ -10,6 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double slowest = 1e-6;  // momenta of smaller speeds are noise [m/s]
+
 bool is_given(const Json& table, const char* key) {
   return table.contains(key) && !table[key].is_null() && table[key] != Json("");
 }
@@ -61,11 +63,12 @@ MomentumCheck check_momentum(const RunReader& run, const Json& scene, const Json
   if (check.why_not.empty() && statistics.is_null()) check.why_not = "stats.json is missing";
   if (check.why_not.empty() && rows.size() < 2) check.why_not = "the run has no frame after the start";
   if (!check.why_not.empty()) return check;
-  const Vec3 force = total_mass(statistics) * gravity_of(scene), start = rows.front().momentum;
-  check.scale = start.norm();
+  const double mass = total_mass(statistics);
+  const Vec3 force = mass * gravity_of(scene), start = rows.front().momentum;
+  check.scale = std::max(start.norm(), mass * slowest);
   for (const Diagnostics& row : rows) {
     const Vec3 change = row.momentum - start, impulse = row.time * force;
-    check.scale = std::max({check.scale, change.norm(), impulse.norm()});
+    check.scale = std::max({check.scale, change.norm(), impulse.norm(), std::sqrt(2 * mass * row.kinetic)});
     if ((change - impulse).norm() <= check.deviation) continue;
     check.deviation = (change - impulse).norm();
     check.frame = row.frame;

@@ -16,8 +16,10 @@ namespace muslin {
 struct MomentumCheck {
   std::string why_not;   ///< in words, where it cannot be checked; empty otherwise
   double deviation = 0;  ///< the largest |p − p(0) − m g t| [kg·m/s]
-  double scale = 0;      ///< the largest |p − p(0)| and |m g t|, at least |p(0)| [kg·m/s]
-  int frame = 0;         ///< of the largest deviation
+  /// The largest of |p − p(0)|, |p(0)|, |m g t|, the momentum √(2 m E) of all kinetic energy if it went one
+  /// way, and that of a speed of 1 µm/s [kg·m/s].
+  double scale = 0;
+  int frame = 0;  ///< of the largest deviation
 
   double share() const { return deviation > 0 ? deviation / scale : 0; }
 };

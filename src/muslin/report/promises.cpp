@@ -100,12 +100,17 @@ class Judge {
   }
 
   Promise finite() const {
-    Promise p = promise("finite", "Every position is a number", "no position is infinite or not a number");
+    Promise p = promise("finite", "Positions and energies are numbers", "none is infinite or not a number");
     if (!has_frames(p)) return p;
-    p.frames = evidence_.frames_not_finite;
+    for (const Diagnostics& row : rows()) {
+      const double sum = row.balance() + row.unbalanced + row.momentum.sum() + row.max_stretch;
+      const std::vector<int>& bad = evidence_.frames_not_finite;
+      if (!std::isfinite(sum) || std::binary_search(bad.begin(), bad.end(), row.frame))
+        p.frames.push_back(row.frame);
+    }
     set(p, p.frames.empty(),
-        p.frames.empty() ? fmt::format("All positions of {} are finite.", counted(rows().size(), "frame"))
-                         : fmt::format("The caches hold positions that are not finite in {}.", in_frames(p)));
+        p.frames.empty() ? fmt::format("All numbers of {} are finite.", counted(rows().size(), "frame"))
+                         : fmt::format("Numbers are not finite in {}.", in_frames(p)));
     return p;
   }
 
