@@ -76,15 +76,15 @@ std::vector<std::array<int, 2>> springs_of_voxel(Bracing bracing) {
   return pairs;
 }
 
-void see_lattice(const RunReader& run, int body, Bracing bracing, int frame, Largest& largest) {
-  const RunReader::LatticeShape& shape = run.lattice(body);
-  const std::vector<Vec3f> now = run.lattice_points(body, frame);
+void see_cells(const RunReader& run, int body, Bracing bracing, int frame, Largest& largest) {
+  const RunReader::Cells& cells = run.cells(body);
+  const std::vector<Vec3f> now = run.selectable_points(body, frame);
   const std::vector<std::array<int, 2>> springs = springs_of_voxel(bracing);
-  for (const std::array<int, 8>& voxel : shape.voxels) {
+  for (const std::array<int, 8>& voxel : cells.voxels) {
     for (const auto& [a, b] : springs) {
       const int i = voxel[static_cast<std::size_t>(a)], j = voxel[static_cast<std::size_t>(b)];
-      const double rest = (shape.rest_positions[static_cast<std::size_t>(j)] -
-                           shape.rest_positions[static_cast<std::size_t>(i)])
+      const double rest = (cells.rest_positions[static_cast<std::size_t>(j)] -
+                           cells.rest_positions[static_cast<std::size_t>(i)])
                               .norm();
       largest.see((at(now, j) - at(now, i)).norm() / rest, run.bodies()[static_cast<std::size_t>(body)],
                   (at(now, i) + at(now, j)) / 2);
@@ -106,8 +106,8 @@ std::optional<StretchPlace> find_largest_stretch(const RunReader& run, int frame
   Largest largest;
   for (int b = 0; b < static_cast<int>(run.bodies().size()); ++b) {
     if (run.is_collider(b)) continue;
-    if (run.has_lattice(b))
-      see_lattice(run, b, bracing_of(scene, run.bodies()[static_cast<std::size_t>(b)]), frame, largest);
+    if (run.has_cells(b))
+      see_cells(run, b, bracing_of(scene, run.bodies()[static_cast<std::size_t>(b)]), frame, largest);
     else
       see_shell(run, b, frame, largest);
   }
