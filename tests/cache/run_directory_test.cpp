@@ -214,7 +214,8 @@ TEST(RunDirectory, OfEarlierVersionsIsReadAndReplaced) {
 
 TEST(RunDirectory, FilesOutsideOfTheRunAreNotThoseOfABody) {
   const auto entry = nlohmann::ordered_json::parse(R"({"name": "flag", "model": "x",
-      "a": {"mesh": "../flag.a.obj", "cache": "flag.a.pc2"}, "b": {"mesh": "flag.b.obj", "cache": "sail.b.pc2"},
+      "a": {"mesh": "../flag.a.obj", "cache": "flag.a.pc2"},
+      "b": {"mesh": "flag.b.obj", "cache": "sail.b.pc2"},
       "c": {"mesh": "flag.c.obj", "cache": "flag.c.pc2"}, "d": 3, "vertices": "c"})");
   const BodyFiles files = listed_files(entry);
   ASSERT_EQ(files.points.size(), 2u);

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "muslin/component/kinds.hpp"
+#include "muslin/scene/force_kinds.hpp"
 #include "muslin/schema/publish.hpp"
 #include "muslin/schema/walk.hpp"
 
@@ -69,9 +71,9 @@ TEST(SceneTable, JsonSchemaIsClosedAndDescribed) {
       EXPECT_TRUE(value["properties"].contains(key.get<std::string>())) << path << " " << key;
   });
   EXPECT_GT(objects, 20);
-  EXPECT_EQ(document["$defs"]["body"]["oneOf"].size(), 2u);
+  EXPECT_EQ(document["$defs"]["body"]["oneOf"].size(), body_kinds().size());
   EXPECT_EQ(document["$defs"]["collider"]["oneOf"].size(), 5u);
-  EXPECT_EQ(document["$defs"]["force"]["oneOf"].size(), 3u);
+  EXPECT_EQ(document["$defs"]["force"]["oneOf"].size(), force_kinds().size());
   EXPECT_EQ(document["$defs"]["time"]["properties"]["duration"]["default"], 2);
 }
 
