@@ -68,13 +68,12 @@ acceleration = [{:.17g}, {:.17g}, 0]
 )",
                                                        9.8 * std::sin(angle), -9.8 * std::cos(angle)));
   const Model& model = simulation.model();
-  double mass = 0, inertia = 0;
+  double inertia = 0;
   Vec3 centre = Vec3::Zero();
   const Vec3 axis(0.25, 2, 0);
   for (std::size_t v = 0; v < model.vertex_count(); ++v) {
     Vec3 arm = model.rest_positions[v] - axis;
     arm.z() = 0;
-    mass += model.masses[v];
     centre += model.masses[v] * arm;
     inertia += model.masses[v] * arm.squaredNorm();
   }
