@@ -27,7 +27,10 @@ schema::Declaration scale_of(Vec3 S::* member) {
 const schema::Table& motion_keyframe_table() {
   static const schema::Table table = schema::table_of<Motion::Key>(
       "keyframes of a motion",
-      {schema::number("time", &Motion::Key::time).unit("s").required().means("after that of the one before"),
+      {schema::number("time", &Motion::Key::time)
+           .unit("s")
+           .required()
+           .means("time of the keyframe, later than the previous one"),
        schema::vector("translate", &Motion::Key::translate).unit("m").means("displacement"),
        schema::custom<Motion::Key>(
            "rotate", {Type::vector},
@@ -41,7 +44,7 @@ const schema::Table& motion_keyframe_table() {
            })
            .unit("degrees")
            .otherwise("`[0, 0, 0]`")
-           .means("turn about `pivot`: about the x axis, then y, then z")});
+           .means("rotation about `pivot`: about the x axis, then y, then z")});
   return table;
 }
 
@@ -62,7 +65,7 @@ schema::Declaration scale_key(Vec3 BodySettings::* member) { return scale_of(mem
 schema::Declaration scale_key(Vec3 ColliderSettings::* member) { return scale_of(member); }
 
 schema::Declaration motion_key() {
-  return schema::keyframes("keyframes", &Motion::keys, motion_keyframe_table).otherwise("stands still");
+  return schema::keyframes("keyframes", &Motion::keys, motion_keyframe_table).otherwise("no motion");
 }
 
 }  // namespace muslin

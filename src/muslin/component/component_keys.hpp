@@ -41,7 +41,7 @@ schema::Declaration friction_key(std::optional<double> S::* member) {
       .range({0, 100, false})
       .may_change_on_resume()
       .otherwise("that of `[contact]`")
-      .means("Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean");
+      .means("Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean");
 }
 
 /// `keyframes` of a motion.

@@ -54,16 +54,16 @@ const schema::Table& lattice_material_table() {
            .required_without({"base"})
            .means("mass per volume"),
        spring_modulus("edge_modulus", &Material::edge_modulus,
-                      "of springs along voxel edges; a spring's constant is modulus × voxel width")
+                      "modulus of springs along voxel edges; a spring's constant is modulus × voxel width")
            .required_without({"base", "youngs_modulus", "law"}),
        spring_modulus("face_diagonal_modulus", &Material::face_diagonal_modulus,
-                      "of springs along face diagonals"),
+                      "modulus of springs along face diagonals"),
        spring_modulus("body_diagonal_modulus", &Material::body_diagonal_modulus,
-                      "of springs along body diagonals"),
+                      "modulus of springs along body diagonals"),
        schema::number("volume_modulus", &Material::volume_modulus)
            .unit("N/m²")
            .range(modulus)
-           .means("stiffness against a change of volume of each voxel; 0 is off"),
+           .means("resistance of each voxel to a change of volume; 0 is off"),
        schema::number("mass_damping", &Material::mass_damping)
            .unit("1/s")
            .range(damping)
@@ -71,14 +71,15 @@ const schema::Table& lattice_material_table() {
        schema::number("stiffness_damping", &Material::stiffness_damping)
            .unit("s")
            .range(damping)
-           .means("Rayleigh's β: slows stretching only"),
+           .means("Rayleigh's β: damps stretching only"),
        law_key(),
        schema::number("youngs_modulus", &Material::youngs_modulus)
            .unit("N/m²")
            .range({0, 1e15, true})
            .shown_if<Material>(is_solid)
-           .means("of the solid; in a scene with springs, that of a large block along its axes, in place of "
-                  "the three moduli"),
+           .means(
+               "Young's modulus of the solid; with springs, of a large block along its axes, in place of the "
+               "three moduli"),
        schema::number("poisson", &Material::poisson)
            .range({-0.99, 0.499, false})
            .needs("law", "springs have a Poisson's ratio of their own; add law = \"neo_hookean\"")

@@ -20,7 +20,7 @@ const schema::Table& keyed_number_table() {
           {schema::number("time", &KeyedNumber::Key::time)
                .unit("s")
                .required()
-               .means("after that of the one before"),
+               .means("time of the keyframe, later than the previous one"),
            schema::number("value", &KeyedNumber::Key::value).required().means("the number at that time")});
       return keyframe;
     };

@@ -16,13 +16,15 @@ schema::Declaration force_body_key(const char* otherwise, const char* meaning) {
 }
 
 schema::Table force_keyframe_table(const char* kind, const char* key, const char* unit) {
-  return schema::table_of<Keyed::Key>(
-      fmt::format("keyframes of {}", kind),
-      {schema::number("time", &Keyed::Key::time).unit("s").required().means("after that of the one before"),
-       schema::vector("value", &Keyed::Key::value)
-           .unit(unit)
-           .required()
-           .means(fmt::format("`{}` at that time", key))});
+  return schema::table_of<Keyed::Key>(fmt::format("keyframes of {}", kind),
+                                      {schema::number("time", &Keyed::Key::time)
+                                           .unit("s")
+                                           .required()
+                                           .means("time of the keyframe, later than the previous one"),
+                                       schema::vector("value", &Keyed::Key::value)
+                                           .unit(unit)
+                                           .required()
+                                           .means(fmt::format("`{}` at that time", key))});
 }
 
 void add_value_keys(schema::Table& table, const ForceValue& value) {
@@ -54,7 +56,7 @@ void add_value_keys(schema::Table& table, const ForceValue& value) {
           .means("the value over time in place of a constant: a list of tables, linear "
                  "between them; times ascend")));
   for (Key& key : window_keys(&ForceSettings::from, &ForceSettings::until, "time when it begins to act",
-                              "time when it ends, after `from`", "for ever"))
+                              "time when it ends, after `from`", "no end"))
     table.keys.push_back(key);
   schema::add_rule<ForceSettings>(table, [](const ForceSettings& force, const schema::Subject& subject) {
     if (force.value.keys.empty()) throw subject.error("", "it has no value", "give at least one key");

@@ -22,7 +22,7 @@ const schema::Table& keys() {
         schema::table_of<ForceSettings>("gravity", {force_body_key("every body", "the body it acts on")});
     add_value_keys(gravity, {.key = "acceleration",
                              .unit = "m/s²",
-                             .meaning = "the same for everything it acts on",
+                             .meaning = "acceleration of all bodies it acts on",
                              .keyframes = keyframes,
                              .otherwise = "`[0, -9.8, 0]`"});
     gravity.complete = [](const TomlTable&, void* settings) {

@@ -28,7 +28,7 @@ const schema::Table& keys() {
                     "centre of mass")});
     add_value_keys(
         point,
-        {.key = "force", .unit = "N", .meaning = "on each of the chosen vertices", .keyframes = keyframes});
+        {.key = "force", .unit = "N", .meaning = "force on each selected vertex", .keyframes = keyframes});
     return point;
   }();
   return table;

@@ -28,7 +28,7 @@ schema::Table declare_pressure() {
       {name_key<PressureSettings>("`pressure0`, `pressure1`, …").means("name in messages"),
        schema::text("body", &PressureSettings::body)
            .otherwise("the only body")
-           .means("a shell that is closed, or nearly: flat lids close its holes"),
+           .means("a shell that is closed or nearly closed; flat lids close its holes"),
        keyed_number_key("pressure", &PressureSettings::pressure, {-largest_pressure, largest_pressure, false})
            .unit("Pa")
            .required()
@@ -45,7 +45,7 @@ schema::Table declare_pressure() {
            .means("pressure outside, for a gas")});
   for (schema::Key& key :
        window_keys(&PressureSettings::from, &PressureSettings::until, "time when it begins to act",
-                   "time when it ends, after `from`", "for ever"))
+                   "time when it ends, after `from`", "no end"))
     table.keys.push_back(key);
   schema::add_rule<PressureSettings>(table, [](const PressureSettings& settings,
                                                const schema::Subject& subject) {

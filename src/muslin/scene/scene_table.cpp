@@ -211,7 +211,7 @@ schema::Table declare_scene() {
                     .means("gravity, point forces, wind; without a gravity force there is no gravity"),
                 schema::sections("pressure", &Scene::pressures, pressure_table, finish_pressure)
                     .may_change_on_resume()
-                    .means("pressures inside of shells"),
+                    .means("pressures inside shells"),
                 schema::sections("probe", &Scene::probes, probe_table, finish_probe)
                     .may_change_on_resume()
                     .means("points whose path is written to `probes.csv`")});

@@ -60,12 +60,12 @@ const schema::Table& near_plane_table() {
   static const schema::Table table = schema::table_of<Plane>(
       "`where.plane`",
       {schema::vector("point", &Plane::point).unit("m").required().means("a point of the plane"),
-       schema::direction("normal", &Plane::normal, "[1, 0, 0]").required().means("across the plane"),
+       schema::direction("normal", &Plane::normal, "[1, 0, 0]").required().means("normal of the plane"),
        schema::number("distance", &Plane::distance)
            .unit("m")
            .range(Range::non_negative())
            .otherwise("half a voxel width")
-           .means("greatest distance of a chosen vertex")});
+           .means("greatest distance of a selected vertex")});
   return table;
 }
 
@@ -79,7 +79,7 @@ const schema::Table& line_table() {
                              .unit("m")
                              .range(Range::non_negative())
                              .otherwise("¾ of a voxel width")
-                             .means("greatest distance of a chosen vertex")});
+                             .means("greatest distance of a selected vertex")});
     schema::add_rule<Line>(line, [](const Line& settings, const schema::Subject& subject) {
       if (settings.a == settings.b)
         throw subject.error("to", "the line ends where it begins", "use `nearest` for a point");

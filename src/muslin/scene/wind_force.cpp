@@ -40,10 +40,9 @@ const schema::Table& keys() {
   static const schema::Table table = [] {
     schema::Table wind =
         schema::table_of<ForceSettings>("wind", {force_body_key("every body", "the body it acts on")});
-    add_value_keys(wind, {.key = "velocity",
-                          .unit = "m/s",
-                          .meaning = "the mean velocity of the air",
-                          .keyframes = keyframes});
+    add_value_keys(
+        wind,
+        {.key = "velocity", .unit = "m/s", .meaning = "mean velocity of the air", .keyframes = keyframes});
     add_own_keys<Own>(wind,
                       {schema::number("air_density", &Own::air_density)
                            .unit("kg/m³")

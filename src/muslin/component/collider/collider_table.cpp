@@ -65,7 +65,7 @@ schema::Table shape_table(Shape shape, std::vector<Key> keys) {
 const schema::Table& plane_table() {
   static const schema::Table table = [] {
     schema::Table plane = shape_table(
-        Shape::plane, {center_key("any point of it"),
+        Shape::plane, {center_key("any point of the plane"),
                        schema::direction("normal", &Collider::normal, "[0, 1, 0]")
                            .means("points to the side where bodies are; they cannot reach the other side")});
     schema::add_rule<Collider>(plane, [](const Collider& collider, const Subject& subject) {

@@ -73,7 +73,7 @@ std::vector<schema::Key> sequence_keys(ColliderSettings::Shape shape) {
           .range({-1e9, 1e9, false})
           .otherwise("as the file says, or 0")
           .needs("sequence", "take it out")
-          .means("time of the first sample; the collider stands still before the first and after the last "
+          .means("time of the first sample; the collider is static before the first and after the last "
                  "sample")};
 }
 

@@ -115,7 +115,7 @@ const schema::Table& keys() {
        schema::within<Own>(&Own::lattice, schema::word("voxels", &LatticeSettings::rule, voxel_rule_names())
                                               .means("`\"cover\"`: every voxel that meets the solid · "
                                                      "`\"threshold\"`: every voxel whose centre "
-                                                     "is nearer than `threshold`")),
+                                                     "has a signed distance below `threshold`")),
        schema::within<Own>(
            &Own::lattice, schema::number("threshold", &LatticeSettings::threshold)
                               .unit("voxel widths")
@@ -125,18 +125,16 @@ const schema::Table& keys() {
                               })
                               .means("signed distance, negative inside; only with `voxels = \"threshold\"`")),
        schema::word("bracing", &Own::bracing, bracing_names())
-           .means("`\"kuhn\"`: springs along the edges of six tetrahedra a voxel · `\"full\"`: all "
-                  "diagonals, the "
-                  "same stiffness in mirrored directions"),
+           .means("`\"kuhn\"`: springs along the edges of six tetrahedra per voxel · `\"full\"`: all "
+                  "diagonals, equally stiff in mirrored directions"),
        schema::word("mass", &Own::mass, {"solid", "cells"})
-           .means("`\"solid\"`: a voxel weighs, and is as stiff as, the share of it that the solid fills · "
-                  "`\"cells\"`: every voxel counts full"),
+           .means("`\"solid\"`: mass and stiffness of a voxel are scaled by the share that the solid fills · "
+                  "`\"cells\"`: every voxel has full mass and stiffness"),
        schema::word("boundary_springs", &Own::boundary_springs, {"full", "shared"})
-           .means(
-               "`\"full\"`: springs on the surface are as stiff as inside · `\"shared\"`: by the share of "
-               "voxels "
-               "around them, as a solid cut out of a block. A sheet of one voxel is 1.75 times too stiff in "
-               "stretch and 4.5 times in bending without")},
+           .means("`\"full\"`: springs on the surface are as stiff as inside · `\"shared\"`: scaled by the "
+                  "share of voxels around them, as in a solid cut out of a block. Without it a sheet of one "
+                  "voxel is "
+                  "1.75 times too stiff in stretch and 4.5 times in bending")},
       {material_key(material_use)});
   return table;
 }

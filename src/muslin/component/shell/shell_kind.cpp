@@ -82,8 +82,8 @@ const schema::Table& keys() {
        schema::number("stretch_limit", &Own::stretch_limit)
            .range({least_stretch_limit, 10, false})
            .may_change_on_resume()
-           .means("largest stretch of a triangle in any direction, as length over rest length; 1.05 is 5 % "
-                  "longer")},
+           .means("largest stretch of a triangle in any direction, as length over rest length; 1.05 allows "
+                  "5 %")},
       {material_key(material_use)});
   return table;
 }
