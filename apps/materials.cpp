@@ -1,4 +1,5 @@
 // muslin materials [NAME]
+#include <algorithm>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -9,18 +10,50 @@
 #include <nlohmann/json.hpp>
 
 #include "muslin/hosts.hpp"
+#include "muslin/material/measured_sheet.hpp"
 
 namespace muslin::app {
 namespace {
 
-std::string table() {
-  std::string text = fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}  {}\n", "name", "density", "edge",
-                                 "face diag.", "body diag.", "description");
-  text += fmt::format("{:<14} {:>9} {:>11} {:>11} {:>11}\n", "", "kg/m3", "N/m2", "N/m2", "N/m2");
+/// How many numbers of a material are guesses.
+std::string guesses(const std::vector<MaterialNumber>& numbers, const std::vector<MaterialCurve>& curves) {
+  const auto is_guess = [](const auto& number) { return number.guess; };
+  return fmt::format("{} of {}",
+                     std::count_if(numbers.begin(), numbers.end(), is_guess) +
+                         std::count_if(curves.begin(), curves.end(), is_guess),
+                     numbers.size() + curves.size());
+}
+
+std::string lattice_table() {
+  std::string text = fmt::format("{:<18} {:>9} {:>11} {:>11} {:>11} {:>9}  {}\n", "lattices", "density",
+                                 "edge", "face diag.", "body diag.", "guesses", "description");
+  text += fmt::format("{:<18} {:>9} {:>11} {:>11} {:>11}\n", "", "kg/m3", "N/m2", "N/m2", "N/m2");
   for (const std::string& name : material_names()) {
     const Material m = find_material(name);
-    text += fmt::format("{:<14} {:>9.4g} {:>11.4g} {:>11.4g} {:>11.4g}  {}\n", name, m.density,
-                        m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus, m.description);
+    if (!m.has_lattice) continue;
+    text += fmt::format("{:<18} {:>9.4g} {:>11.4g} {:>11.4g} {:>11.4g} {:>9}  {}\n", name, m.density,
+                        m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus,
+                        guesses(lattice_numbers(m), {}), m.description);
+  }
+  return text;
+}
+
+/// For curves it shows the stiffness at rest.
+std::string shell_table() {
+  std::string text =
+      fmt::format("{:<18} {:>9} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9}  {}\n", "shells", "density", "warp",
+                  "weft", "shear", "bend warp", "bend weft", "guesses", "description");
+  text += fmt::format("{:<18} {:>9} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "", "kg/m2", "N/m", "N/m", "N/m", "N m",
+                      "N m");
+  for (const std::string& name : material_names()) {
+    const Material m = find_material(name);
+    if (!m.shell) continue;
+    const SheetStress stress = stress_of(*m.shell);
+    const SheetMoments moments = moments_of(*m.shell);
+    text += fmt::format("{:<18} {:>9.4g} {:>8.4g} {:>8.4g} {:>8.4g} {:>9.2g} {:>9.2g} {:>9}  {}\n", name,
+                        m.shell->areal_density, stress.warp.slope(0), stress.weft.slope(0),
+                        stress.shear.slope(0), moments.warp.slope(0), moments.weft.slope(0),
+                        guesses(shell_numbers(m), shell_curves(m)), m.description);
   }
   return text;
 }
@@ -38,10 +71,16 @@ std::string page(const Material& m) {
   const auto rows = [&](const char* title, const std::vector<MaterialNumber>& numbers) {
     if (!numbers.empty()) text += title;
     for (const MaterialNumber& number : numbers)
-      text += fmt::format("  {:<24} {:>12.6g} {}\n", number.key, number.value, plain(number.unit));
+      text += fmt::format("  {:<24} {:>12.6g} {}{}\n", number.key, number.value, plain(number.unit),
+                          number.guess ? " (guess)" : "");
   };
   rows("lattice:\n", lattice_numbers(m));
   rows("\nshell:\n", shell_numbers(m));
+  for (const MaterialCurve& curve : shell_curves(m)) {
+    text += fmt::format("  {:<24}", curve.key);
+    for (const Vec2& point : curve.points) text += fmt::format(" ({:.6g}, {:.6g})", point[0], point[1]);
+    text += fmt::format(" {}{}\n", plain(curve.unit), curve.guess ? " (guess)" : "");
+  }
   if (!m.reference.empty()) text += "\nreference (SI):\n";
   for (const auto& [what, value] : m.reference) text += fmt::format("  {:<24} {:>12.6g}\n", what, value);
   return text + "\nsource: " + m.source + "\n";
@@ -50,9 +89,12 @@ std::string page(const Material& m) {
 using Json = nlohmann::ordered_json;
 
 Json numbers(const Material& m) {
-  Json json = {{"name", m.name}, {"description", m.description}, {"source", m.source}};
+  Json json = {
+      {"name", m.name}, {"description", m.description}, {"source", m.source}, {"guesses", m.guesses}};
   for (const MaterialNumber& number : lattice_numbers(m)) json["lattice"][number.key] = number.value;
   for (const MaterialNumber& number : shell_numbers(m)) json["shell"][number.key] = number.value;
+  for (const MaterialCurve& curve : shell_curves(m))
+    for (const Vec2& point : curve.points) json["shell"][curve.key].push_back({point[0], point[1]});
   json["reference"] = Json::object();
   for (const auto& [what, value] : m.reference) json["reference"][what] = value;
   return json;
@@ -77,7 +119,7 @@ void add_materials(CLI::App& program) {
     if (*json) {
       print(json_of(*name));
     } else {
-      print(name->empty() ? table() : page(find_material(*name)));
+      print(name->empty() ? lattice_table() + "\n" + shell_table() : page(find_material(*name)));
     }
   });
 }

@@ -17,6 +17,7 @@ namespace muslin::python {
 namespace {
 
 using Numbers = nb::typed<nb::dict, nb::str, nb::float_>;
+using Curve = nb::typed<nb::list, nb::typed<nb::tuple, nb::float_, nb::float_>>;
 
 Numbers as_dict(const std::vector<MaterialNumber>& numbers) {
   Numbers dict;
@@ -31,12 +32,25 @@ void bind_material(nb::module_& m) {
       .def_ro("name", &Material::name)
       .def_ro("description", &Material::description)
       .def_ro("source", &Material::source, "Source of the numbers.")
+      .def_ro("guesses", &Material::guesses, "Numbers that are not measured, such as shell.poisson.")
       .def_prop_ro(
           "lattice", [](const Material& material) { return as_dict(lattice_numbers(material)); },
           "Numbers of a lattice by the keys of the scene file, in SI units; empty if it has none.")
       .def_prop_ro(
           "shell", [](const Material& material) { return as_dict(shell_numbers(material)); },
           "Numbers of a shell by the keys of the scene file, in SI units; empty if it has none.")
+      .def_prop_ro(
+          "curves",
+          [](const Material& material) {
+            nb::typed<nb::dict, nb::str, Curve> curves;
+            for (const MaterialCurve& curve : shell_curves(material)) {
+              Curve points;
+              for (const Vec2& point : curve.points) points.append(nb::make_tuple(point[0], point[1]));
+              curves[curve.key.c_str()] = points;
+            }
+            return curves;
+          },
+          "Measured curves of a shell by the keys of the scene file: lists of points; empty if it has none.")
       .def_prop_ro(
           "reference",
           [](const Material& material) {

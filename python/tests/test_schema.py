@@ -45,6 +45,7 @@ SOUND = {
     "body": [
         {"name": "a", "mesh": "a.obj", "voxel_width": 0.1, "material": "rubber", "scale": [1, 2, 3]},
         {"mesh": "b.obj", "model": "shell", "material": {"base": "cotton", "poisson": 0.1}, "stretch_limit": 1.05},
+        {"name": "c", "mesh": "b.obj", "model": "shell", "material": {"base": "cotton", "warp_curve": [[0, 0], [0.1, 9]]}},
     ],
     "collider": [{"shape": "sphere", "radius": 1, "density": 2}],
     "pin": [{"body": "a", "where": {"nearest": [0, 0, 0]}, "keyframes": [{"time": 0}, {"time": 1}]}],
@@ -63,6 +64,8 @@ MISTAKES = [
     ("body", [{"mesh": "a.obj", "model": "shell", "material": "cotton", "voxel_width": 1}]),
     ("body", [{"mesh": "a.obj", "model": "shell", "material": "cotton", "stretch_limit": 1}]),
     ("body", [{"mesh": "a.obj", "model": "shell", "material": {"bending_warp": 1}}]),
+    ("body", [{"mesh": "a.obj", "model": "shell", "material": {"base": "cotton", "warp_curve": [[0.1, 9, 1]]}}]),
+    ("body", [{"mesh": "a.obj", "model": "shell", "material": {"base": "cotton", "warp_curve": [[-0.1, 9]]}}]),
     ("body", [{"mesh": "a.obj", "voxel_width": 1, "material": {"density": 1}}]),
     ("body", [{"mesh": "a.obj", "voxel_width": 1, "material": {"base": "rubber", "shear_modulus": 1}}]),
     ("body", [{"mesh": "", "voxel_width": 1, "material": "rubber"}]),

@@ -98,8 +98,8 @@ TEST(RunReport, TracesTheNumbersOfFabrics) {
   EXPECT_EQ(bending["unit"], "N·m");
   EXPECT_THAT(bending["meaning"], HasSubstr("warp bent"));
   EXPECT_EQ(bending["origin"], "from the material library");
-  EXPECT_TRUE(bending["estimated"]);
-  EXPECT_FALSE(number(library, "membrane_warp")["estimated"]);
+  EXPECT_TRUE(bending["guess"]);
+  EXPECT_FALSE(number(library, "membrane_warp")["guess"]);
   EXPECT_EQ(number(library, "mass_damping")["origin"], "derived or default");
 
   std::string body = test::sheet_body;
@@ -108,7 +108,7 @@ TEST(RunReport, TracesTheNumbersOfFabrics) {
                                          {"body.sheet.material.bending_weft=1e-5"}))["fabrics"][0];
   EXPECT_EQ(number(changed, "areal_density")["origin"], "from the scene file");
   EXPECT_EQ(number(changed, "bending_weft")["origin"], "overridden by --set or a program");
-  EXPECT_FALSE(number(changed, "bending_weft")["estimated"]);
+  EXPECT_FALSE(number(changed, "bending_weft")["guess"]);
   EXPECT_EQ(number(changed, "bending_warp")["origin"], "from the material library");
 
   const Json other = json_of(run_sheet(scratch, test::ball_and_floor + test::gravity, test::sheet_body,

@@ -72,13 +72,23 @@ class Coupler {
     find_triangles();
   }
 
-  HingeCoupling couple() const {
-    const std::vector<Row> recovered = recover_slopes();
-    std::vector<Triangle> rows(shell_.triangles.size());
-    parallel_for(rows.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) rows[t] = curvature_of(t, recovered);
-    });
-    return assemble(rows);
+  HingeCoupling couple() const { return assemble(triangles()); }
+
+  PlateCurvatures curvatures() const {
+    PlateCurvatures result;
+    result.hinge_count = shell_.hinges.size();
+    result.first.push_back(0);
+    const std::vector<Triangle> rows = triangles();
+    for (std::size_t t = 0; t < rows.size(); ++t) {
+      // The free sides follow from the others; κ = (1/A) Σ l α n⊗n.
+      const Mat3 all = normals_of(t).transpose() * compliance_[t] * stiffness_[t] / shell_.areas[t];
+      for (std::size_t i = 0; i < rows[t].hinges.size(); ++i) {
+        result.hinges.push_back(rows[t].hinges[i]);
+        result.weights.push_back((all * rows[t].turns.col(static_cast<Eigen::Index>(i))).head<2>());
+      }
+      result.first.push_back(static_cast<int>(result.hinges.size()));
+    }
+    return result;
   }
 
  private:
@@ -144,13 +154,7 @@ class Coupler {
     stiffness_.resize(count);
     compliance_.resize(count);
     for (std::size_t t = 0; t < count; ++t) {
-      Mat3 normals;
-      for (int c = 0; c < 3; ++c) {
-        const Side& s = sides_[t][at(c)];
-        const Vec2& n = s.outward;
-        normals.row(c) = s.length * Eigen::RowVector3d(n.x() * n.x(), n.y() * n.y(), 2 * n.x() * n.y());
-      }
-      const Mat3 inverse = normals.inverse();
+      const Mat3 inverse = normals_of(t).inverse();
       compliance_[t] = shell_.areas[t] * inverse.transpose() * rigidity_.inverse() * inverse;
       stiffness_[t].setZero();
       if (held_[t]) {
@@ -159,6 +163,17 @@ class Coupler {
       }
       condense(t);
     }
+  }
+
+  /// l (n_u², n_v², 2 n_u n_v) by side.
+  Mat3 normals_of(std::size_t t) const {
+    Mat3 normals;
+    for (int c = 0; c < 3; ++c) {
+      const Side& s = sides_[t][at(c)];
+      const Vec2& n = s.outward;
+      normals.row(c) = s.length * Eigen::RowVector3d(n.x() * n.x(), n.y() * n.y(), 2 * n.x() * n.y());
+    }
+    return normals;
   }
 
   /// Free sides bear no moment: the others' stiffness is the inverse of their compliance.
@@ -311,6 +326,15 @@ class Coupler {
     return compliance.ldlt().solve(right);
   }
 
+  std::vector<Triangle> triangles() const {
+    const std::vector<Row> recovered = recover_slopes();
+    std::vector<Triangle> rows(shell_.triangles.size());
+    parallel_for(rows.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) rows[t] = curvature_of(t, recovered);
+    });
+    return rows;
+  }
+
   Triangle curvature_of(std::size_t t, const std::vector<Row>& recovered) const {
     Triangle triangle;
     if (held_[t]) return triangle;
@@ -446,6 +470,11 @@ HingeCoupling couple_hinges(const Shell& shell, const BendingModuli& moduli,
   none.lumped.assign(shell.hinges.size(), 0.0);
   const bool stiff = moduli.warp != 0 || moduli.weft != 0 || moduli.bias != 0;
   return stiff ? Coupler(shell, moduli, held).couple() : none;
+}
+
+PlateCurvatures plate_curvatures(const Shell& shell, const BendingModuli& moduli,
+                                 std::span<const std::uint8_t> held) {
+  return Coupler(shell, moduli, held).curvatures();
 }
 
 }  // namespace muslin

@@ -46,10 +46,20 @@ struct HingeCoupling {
   std::vector<double> times(std::span<const double> d) const;
 };
 
+/// The curvatures κ_uu and κ_vv of triangles, against rest, as sums over hinges: those of triangle t are
+/// entries first[t] ≤ k < first[t + 1]. They are the curvatures for which K is the plate's.
+struct PlateCurvatures {
+  std::size_t hinge_count = 0;
+  std::vector<int> first, hinges;
+  std::vector<Vec2> weights;  ///< by entry [1/m per radian]
+};
+
 /// Couples the hinges of `shell`. A triangle whose vertices are all in `held` (#V, or empty) is a clamp: the
 /// sheet's normal at its edges is the triangle's normal. Errors: usage, if a modulus is negative, |ν| ≥ 1, or
 /// the bias too low.
 HingeCoupling couple_hinges(const Shell& shell, const BendingModuli& moduli,
                             std::span<const std::uint8_t> held = {});
+PlateCurvatures plate_curvatures(const Shell& shell, const BendingModuli& moduli,
+                                 std::span<const std::uint8_t> held = {});
 
 }  // namespace muslin

@@ -1,7 +1,8 @@
 // A law states how an element resists its measure: the metric of a triangle, the angle of a hinge, the
 // deformation of a tetrahedron. It is a struct without data:
 //
-//   Constants     doubles only, derived from the parameters once for each element
+//   Constants     doubles only, derived from the parameters once for each element; with `shared` of any
+//                 type, the same for all elements
 //   parameters    given by the user: name, unit, range, sentence
 //   energy, …     ψ and its derivatives, as the stencil of the element asks for them
 //
@@ -51,6 +52,9 @@ class LaneArray {
   bool uniform_ = false;
 };
 
+template <class Law>
+concept SharedLaw = requires { requires Law::shared; };
+
 /// The constants of a law for one batch of elements.
 template <class Law>
 class LawLanes {
@@ -66,6 +70,17 @@ class LawLanes {
     return Constants{lanes_[I][l]...};
   }
   std::array<const double*, count> lanes_;
+};
+
+template <SharedLaw Law>
+class LawLanes<Law> {
+ public:
+  using Constants = typename Law::Constants;
+  explicit LawLanes(const Constants& constants) : constants_(constants) {}
+  MUSLIN_INLINE const Constants& operator[](int) const { return constants_; }
+
+ private:
+  const Constants& constants_;
 };
 
 /// The constants of a law for every element.
@@ -94,6 +109,16 @@ class LawConstants {
 
  private:
   std::array<LaneArray, count> values_;
+};
+
+template <SharedLaw Law>
+class LawConstants<Law> {
+ public:
+  explicit LawConstants(const typename Law::Constants& constants) : constants_(constants) {}
+  LawLanes<Law> at(int) const { return LawLanes<Law>(constants_); }
+
+ private:
+  typename Law::Constants constants_;
 };
 
 }  // namespace muslin

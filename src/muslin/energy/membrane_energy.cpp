@@ -40,10 +40,6 @@ TriangleStencil stencil_of(const ElementSlabs<3>& slabs, const Shell& shell,
   return stencil;
 }
 
-std::shared_ptr<const ElementSlabs<3>> slabs_of(const Shell& shell) {
-  return std::make_shared<const ElementSlabs<3>>(corners_of(shell), shell.vertex_count());
-}
-
 }  // namespace
 
 MembraneEnergy::MembraneEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
@@ -54,13 +50,13 @@ MembraneEnergy::MembraneEnergy(std::shared_ptr<const Slabs> slabs, const Shell& 
 
 MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
                                std::shared_ptr<const SymmetricPattern> pattern)
-    : MembraneEnergy(slabs_of(shell), shell,
+    : MembraneEnergy(triangle_slabs(shell), shell,
                      std::vector<PlaneModuli>(shell.triangles.size(), constants_of(moduli)),
                      std::move(pattern)) {}
 
 MembraneEnergy::MembraneEnergy(const Shell& shell, std::span<const MembraneModuli> moduli,
                                std::shared_ptr<const SymmetricPattern> pattern)
-    : MembraneEnergy(slabs_of(shell), shell, constants_of(moduli), std::move(pattern)) {
+    : MembraneEnergy(triangle_slabs(shell), shell, constants_of(moduli), std::move(pattern)) {
   assert(moduli.size() == shell.triangles.size());
 }
 

@@ -86,6 +86,19 @@ std::shared_ptr<const FormCoupling> difference_of(const Shell& shell, const Hing
 
 }  // namespace
 
+namespace {
+
+/// The plate of these rigidities along the threads, with the twisting rigidity of the unbent curves and the
+/// coupling of their least slopes.
+BendingModuli plate_of(const BendingCurves& c, double warp, double weft) {
+  const double twist = c.bias - lowest_bias(c.warp.slope(0), c.weft.slope(0), c.poisson);
+  const double coupling = c.poisson * std::sqrt(c.warp.least_slope() * c.weft.least_slope());
+  const double mean = std::sqrt(warp * weft), poisson = mean > 0 ? coupling / mean : 0;
+  return {warp, weft, lowest_bias(warp, weft, poisson) + twist, poisson};
+}
+
+}  // namespace
+
 ShellBending::ShellBending(const Shell& shell, const BendingModuli& moduli,
                            std::shared_ptr<const SymmetricPattern> pattern,
                            std::span<const std::uint8_t> held)
@@ -93,12 +106,31 @@ ShellBending::ShellBending(const Shell& shell, const BendingModuli& moduli,
       slabs_(hinge_vertices(shell), shell.vertex_count()),
       stencil_(slabs_, shell),
       coupling_(couple_hinges(shell, moduli, held)) {
-  if (!this->pattern()) return;
-  slots_ = slabs_.slots(*this->pattern());
-  difference_ = difference_of(shell, coupling_);
+  if (this->pattern()) slots_ = slabs_.slots(*this->pattern());
+  prepare_systems(shell, coupling_);
+}
+
+ShellBending::ShellBending(const Shell& shell, const BendingCurves& curves,
+                           std::shared_ptr<const SymmetricPattern> pattern,
+                           std::span<const std::uint8_t> held)
+    : ShellBending(shell, plate_of(curves, curves.warp.least_slope(), curves.weft.least_slope()),
+                   std::move(pattern), held) {
+  const double warp = curves.warp.least_slope(), weft = curves.weft.least_slope();
+  curves_.emplace(plate_curvatures(shell, plate_of(curves, warp, weft), held), shell.areas,
+                  curves.warp.plus(-warp), curves.weft.plus(-weft));
+  const HingeCoupling stiffest = couple_hinges(
+      shell, plate_of(curves, curves.warp.greatest_slope(), curves.weft.greatest_slope()), held);
+  coupling_.lumped = stiffest.lumped;
+  prepare_systems(shell, stiffest);
+}
+
+void ShellBending::prepare_systems(const Shell& shell, const HingeCoupling& stiffest) {
+  if (!pattern()) return;
+  difference_ = difference_of(shell, stiffest);
   // A mean of (1/h₁ + 1/h₂)², h₁ and h₂ the heights of its triangles.
+  stiffness_ = 0;
   for (std::size_t e = 0; e < shell.hinges.size(); ++e)
-    stiffness_ += coupling_.lumped[e] * std::pow(2 * shell.hinges[e].length / shell.hinges[e].area, 2);
+    stiffness_ += stiffest.lumped[e] * std::pow(2 * shell.hinges[e].length / shell.hinges[e].area, 2);
 }
 
 void ShellBending::load(std::span<const double> of_hinge, int first, int count, double* lanes) const {
@@ -145,11 +177,15 @@ double half_product(std::span<const double> p, std::span<const double> q) {
 
 double ShellBending::value(ConstVectors x) const {
   const std::vector<double> bent = deviations(x);
-  return half_product(bent, coupling_.times(bent));
+  const double linear = half_product(bent, coupling_.times(bent));
+  return curves_ ? linear + curves_->energy(bent) : linear;
 }
 
 double ShellBending::add_gradient_and_value(ConstVectors x, Vectors g) const {
-  const std::vector<double> bent = deviations(x), moments = coupling_.times(bent);
+  const std::vector<double> bent = deviations(x);
+  std::vector<double> moments = coupling_.times(bent);
+  double energy = half_product(bent, moments);
+  if (curves_) energy += curves_->add_moments(bent, moments);
   slabs_.for_each_batch([&](int first, int count, const Slabs::Slab& slab) {
     Batch<4> corners, force;
     double moment[element_lanes];
@@ -158,15 +194,21 @@ double ShellBending::add_gradient_and_value(ConstVectors x, Vectors g) const {
     forces_of(corners, moment, force);
     slabs_.scatter(first, count, slab, force, g);
   });
-  return half_product(bent, moments);
+  return energy;
 }
 
 void ShellBending::add_gradient(ConstVectors x, Vectors g) const { add_gradient_and_value(x, g); }
 
 void ShellBending::add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const {
-  const std::vector<double> factors = coupling_.times(changes(x, p));
   const bool exact = kind == Stiffness::exact;
-  const std::vector<double> moments = exact ? coupling_.times(deviations(x)) : std::vector<double>();
+  const std::vector<double> change = changes(x, p);
+  std::vector<double> factors = coupling_.times(change), bent, moments;
+  if (exact || curves_) bent = deviations(x);
+  if (exact) moments = coupling_.times(bent);
+  if (curves_) {
+    curves_->add_changes(bent, change, factors);
+    if (exact) curves_->add_moments(bent, moments);
+  }
   slabs_.for_each_batch([&](int first, int count, const Slabs::Slab& slab) {
     Batch<4> corners, along, force;
     double factor[element_lanes], moment[element_lanes];

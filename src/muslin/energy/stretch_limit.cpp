@@ -46,7 +46,7 @@ StretchLimitEnergy::StretchLimitEnergy(std::shared_ptr<const Slabs> slabs, const
 
 StretchLimitEnergy::StretchLimitEnergy(const Shell& shell, double limit, double stiffness,
                                        std::shared_ptr<const SymmetricPattern> pattern)
-    : StretchLimitEnergy(std::make_shared<const Slabs>(corners_of(shell), shell.vertex_count()), shell,
-                         StretchBarrier(limit), stiffness, std::move(pattern)) {}
+    : StretchLimitEnergy(triangle_slabs(shell), shell, StretchBarrier(limit), stiffness, std::move(pattern)) {
+}
 
 }  // namespace muslin

@@ -18,6 +18,10 @@ std::vector<std::array<int, 3>> corners_of(const Shell& shell) {
   return corners;
 }
 
+std::shared_ptr<const ElementSlabs<3>> triangle_slabs(const Shell& shell) {
+  return std::make_shared<const ElementSlabs<3>>(corners_of(shell), shell.vertex_count());
+}
+
 TriangleStencil::TriangleStencil(const ElementSlabs<3>& slabs, const Shell& shell) {
   for (std::size_t i = 0; i < 4; ++i)
     rest_[i] = slabs.by_entry<double>([&](std::size_t t) { return shell.inverses[t].data()[i]; });

@@ -4,8 +4,10 @@
 //
 //   energy       A ψ
 //   stress       A S = A ∂ψ/∂E in (warp, weft), E = ½ (FᵀF − 1):
-//                dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db + b·da))
-//   moduli       C₁₁, C₁₂, C₂₂ and G [N/m] in
+//
+//     dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db + b·da))
+//
+//   moduli       C₁₁, C₁₂, C₂₂ and G [N/m], constant or a function of the metric, in
 //
 //     d²W = A (C₁₁ (a·da)² + 2 C₁₂ (a·da)(b·db) + C₂₂ (b·db)² + G (a·db + b·da)²)
 //         + A (S_uu da·da + S_vv db·db + 2 S_uv da·db),
@@ -18,6 +20,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -280,21 +283,38 @@ class TriangleStencil {
   void find_held(int first, int count, std::span<const double> masses,
                  const std::vector<std::array<int, 3>>& vertices, MassBound& bound) const;
 
-  /// A stiffness in the frame of the law: turned data and moduli only where the law is principal.
+  /// The moduli of a law in (warp, weft) do not depend on the strain.
   template <class Law>
-  struct Stiff {
-    StrainedTriangles strained;
-  };
-  template <class Law>
-    requires(Law::principal)
-  struct Stiff<Law> {
-    StrainedTriangles strained;
-    double d00[element_lanes], d10[element_lanes], d01[element_lanes], d11[element_lanes];
+  static constexpr bool has_constant_moduli = requires(const typename Law::Constants& c) { Law::moduli(c); };
+
+  struct LaneModuli {
     double along[2][element_lanes], across[2][element_lanes];  // C₁₁, C₂₂; C₁₂, G
     MUSLIN_INLINE double c11(int l) const { return along[0][l]; }
     MUSLIN_INLINE double c22(int l) const { return along[1][l]; }
     MUSLIN_INLINE double c12(int l) const { return across[0][l]; }
     MUSLIN_INLINE double g(int l) const { return across[1][l]; }
+    MUSLIN_INLINE void set(int l, const PlaneModuli& c) {
+      along[0][l] = c.c11, along[1][l] = c.c22;
+      across[0][l] = c.c12, across[1][l] = c.g;
+    }
+  };
+
+  /// A stiffness in the frame of the law: moduli only where they depend on the strain, turned data only where
+  /// the law is principal.
+  template <class Law>
+  struct Stiff : LaneModuli {
+    StrainedTriangles strained;
+  };
+  template <class Law>
+    requires(has_constant_moduli<Law>)
+  struct Stiff<Law> {
+    StrainedTriangles strained;
+  };
+  template <class Law>
+    requires(Law::principal)
+  struct Stiff<Law> : LaneModuli {
+    StrainedTriangles strained;
+    double d00[element_lanes], d10[element_lanes], d01[element_lanes], d11[element_lanes];
     TriangleRest turned(const TriangleRest& rest) const { return {d00, d10, d01, d11, rest.area}; }
   };
 
@@ -330,6 +350,9 @@ class TriangleStencil {
       turn(kind == Stiffness::material, law, rest, out);
     } else {
       find_stress(law, rest, s);
+      if constexpr (!has_constant_moduli<Law>) {
+        for (int l = 0; l < element_lanes; ++l) out.set(l, Law::moduli(law[l], metric(s.a, s.b, l)));
+      }
       if (kind == Stiffness::bounded) bound_compression(rest, bound.scale, bound.held, s);
       if (kind == Stiffness::projected) cut_compression(s.suu, s.svv, s.suv);
       if (kind == Stiffness::material)
@@ -341,21 +364,13 @@ class TriangleStencil {
   template <class Law>
   MUSLIN_VECTOR_CODE static void multiply(const LawLanes<Law>& law, const TriangleRest& rest,
                                           const Stiff<Law>& stiff, const Batch<3>& p, Batch<3>& y) {
-    if constexpr (Law::principal) {
-      stiffness_product(stiff, stiff.turned(rest), stiff.strained, p, y);
-    } else {
-      stiffness_product(OfLaw<Law>{law}, rest, stiff.strained, p, y);
-    }
+    stiffness_product(moduli_of(law, stiff), in_frame(rest, stiff), stiff.strained, p, y);
   }
 
   template <class Law>
   static void add_corner_block(const LawLanes<Law>& law, const TriangleRest& rest, const Stiff<Law>& stiff,
                                int l, int corner, Mat3& block) {
-    if constexpr (Law::principal) {
-      muslin::add_corner_block(stiff, stiff.turned(rest), stiff.strained, l, corner, block);
-    } else {
-      muslin::add_corner_block(OfLaw<Law>{law}, rest, stiff.strained, l, corner, block);
-    }
+    muslin::add_corner_block(moduli_of(law, stiff), in_frame(rest, stiff), stiff.strained, l, corner, block);
   }
 
   template <class Law>
@@ -364,16 +379,12 @@ class TriangleStencil {
                                                  const unsigned* rows, const ElementSlabs<3>::Slots* slots,
                                                  Float4* blocks) {
     BlockFactors factors;
-    if constexpr (Law::principal) {
-      find_block_factors(stiff, stiff.turned(rest), stiff.strained, scale, factors);
-    } else {
-      find_block_factors(OfLaw<Law>{law}, rest, stiff.strained, scale, factors);
-    }
+    find_block_factors(moduli_of(law, stiff), in_frame(rest, stiff), stiff.strained, scale, factors);
     for (int l = 0; l < count; ++l) add_block_rows(factors, l, rows[l], slots[l], blocks);
   }
 
  private:
-  /// The moduli of a law in (warp, weft).
+  /// Constant moduli of a law.
   template <class Law>
   struct OfLaw {
     const LawLanes<Law>& law;
@@ -382,6 +393,23 @@ class TriangleStencil {
     MUSLIN_INLINE double c22(int l) const { return Law::moduli(law[l]).c22; }
     MUSLIN_INLINE double g(int l) const { return Law::moduli(law[l]).g; }
   };
+
+  template <class Law>
+  MUSLIN_INLINE static decltype(auto) moduli_of(const LawLanes<Law>& law, const Stiff<Law>& stiff) {
+    if constexpr (has_constant_moduli<Law>) {
+      return OfLaw<Law>{law};
+    } else {
+      return static_cast<const LaneModuli&>(stiff);
+    }
+  }
+  template <class Law>
+  MUSLIN_INLINE static TriangleRest in_frame(const TriangleRest& rest, const Stiff<Law>& stiff) {
+    if constexpr (Law::principal) {
+      return stiff.turned(rest);
+    } else {
+      return rest;
+    }
+  }
 
   template <class Law>
   MUSLIN_INLINE static bool stores_energy(const LawLanes<Law>& law, const LaneVectors& a,
@@ -433,8 +461,7 @@ class TriangleStencil {
         s.a[k][l] = cosine * a + sine * b;
         s.b[k][l] = cosine * b - sine * a;
       }
-      out.along[0][l] = p.moduli.c11, out.along[1][l] = p.moduli.c22;
-      out.across[0][l] = p.moduli.c12, out.across[1][l] = p.moduli.g;
+      out.set(l, p.moduli);
       s.suu[l] = p.stress.uu;
       s.svv[l] = p.stress.vv;
       s.suv[l] = p.stress.uv;
@@ -448,5 +475,6 @@ class TriangleStencil {
 
 /// Returns the triangles' corners, as ElementSlabs takes them.
 std::vector<std::array<int, 3>> corners_of(const Shell& shell);
+std::shared_ptr<const ElementSlabs<3>> triangle_slabs(const Shell& shell);
 
 }  // namespace muslin

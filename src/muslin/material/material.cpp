@@ -1,8 +1,10 @@
 #include "muslin/material/material.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "muslin/core/nearest_name.hpp"
 #include "muslin/core/toml_table.hpp"
-#include "muslin/material/estimates.hpp"
 #include "muslin/material/library.hpp"
 #include "muslin/material/material_table.hpp"
 #include "muslin/schema/declare.hpp"
@@ -10,12 +12,34 @@
 namespace muslin {
 namespace {
 
-std::vector<MaterialNumber> numbers_in(const schema::Table& table, const TomlValue& written) {
+bool is_guess(const Material& material, const std::string& table, const std::string& key) {
+  return std::find(material.guesses.begin(), material.guesses.end(), table + "." + key) !=
+         material.guesses.end();
+}
+
+std::vector<MaterialNumber> numbers_in(const Material& material, const std::string& name,
+                                       const schema::Table& table, const TomlValue& written) {
   std::vector<MaterialNumber> numbers;
-  for (std::size_t i = 0; i < written.keys.size(); ++i)
-    if (written.items[i].type != TomlValue::Type::string)
-      numbers.push_back({written.keys[i], written.items[i].real, table.find(written.keys[i])->unit});
+  for (std::size_t i = 0; i < written.keys.size(); ++i) {
+    const std::string& key = written.keys[i];
+    if (written.items[i].type == TomlValue::Type::real)
+      numbers.push_back({key, written.items[i].real, table.find(key)->unit, is_guess(material, name, key)});
+  }
   return numbers;
+}
+
+/// Reads the names of numbers that are not measured.
+void read_guesses(const schema::Key& key, const TomlTable& file, Material& material) {
+  std::vector<std::string> known;
+  for (const auto& [name, table] :
+       {std::pair{"lattice.", &lattice_material_table()}, std::pair{"shell.", &shell_material_table()}})
+    for (const std::string& number : table->names()) known.push_back(name + number);
+  for (const TomlValue& item : *file.array(key.name, "keys such as [\"shell.poisson\"]")) {
+    if (std::find(known.begin(), known.end(), item.string) == known.end())
+      throw file.error(key.name, "`" + item.string + "` in `guesses` is not a number of a material",
+                       name_advice(item.string, known));
+    material.guesses.push_back(item.string);
+  }
 }
 
 void read_lattice(const schema::Key& key, const TomlTable& file, Material& material) {
@@ -42,15 +66,14 @@ void read_reference(const schema::Key& key, const TomlTable& file, Material& mat
 
 /// A material file. The library writes none.
 const schema::Table& file_table() {
-  const auto unread = [](const schema::Key&, const TomlTable&, Material&) {};  // by estimated_numbers
   const auto unwritten = [](const schema::Key&, const Material&, TomlValue&) {};
   static const schema::Table table = schema::table_of<Material>(
       "material file",
       {schema::text("name", &Material::name).otherwise("the file's name").means("name in messages"),
        schema::text("description", &Material::description).means("what it is, in a sentence"),
        schema::text("source", &Material::source).means("where its numbers come from"),
-       schema::custom<Material>("estimated", {schema::Type::text}, unread, unwritten)
-           .means("the numbers that are estimates, such as `shell.bending_warp`"),
+       schema::custom<Material>("guesses", {schema::Type::text}, read_guesses, unwritten)
+           .means("numbers that are not measured, such as `shell.bending_warp`"),
        schema::custom<Material>("lattice", {schema::Type::table}, read_lattice, unwritten)
            .means("its numbers as a lattice"),
        schema::nested("shell", &Material::shell, shell_material_table).means("its numbers as a shell"),
@@ -88,7 +111,6 @@ Material parse_material(std::string_view text, const std::string& file) {
   material.name = std::filesystem::path(file).stem().string();
   material.has_lattice = false;
   file_table().read(top, material);
-  estimated_numbers(root);  // refuses names that are no numbers
   if (!material.has_lattice && !material.shell) {
     throw Error(
         ErrorKind::input, Place{file, 0, 0}, "the material file has no table [lattice] or [shell]",
@@ -99,12 +121,26 @@ Material parse_material(std::string_view text, const std::string& file) {
 
 std::vector<MaterialNumber> lattice_numbers(const Material& material) {
   if (!material.has_lattice) return {};
-  return numbers_in(lattice_material_table(), lattice_material_table().write(material));
+  return numbers_in(material, "lattice", lattice_material_table(), lattice_material_table().write(material));
 }
 
 std::vector<MaterialNumber> shell_numbers(const Material& material) {
   if (!material.shell) return {};
-  return numbers_in(shell_material_table(), shell_material_table().write(*material.shell));
+  return numbers_in(material, "shell", shell_material_table(), shell_material_table().write(*material.shell));
+}
+
+std::vector<MaterialCurve> shell_curves(const Material& material) {
+  std::vector<MaterialCurve> curves;
+  if (!material.shell) return curves;
+  const ShellMaterial& m = *material.shell;
+  for (const auto& [key, curve] :
+       {std::pair{"warp_curve", &m.warp_curve}, std::pair{"weft_curve", &m.weft_curve},
+        std::pair{"shear_curve", &m.shear_curve}, std::pair{"bending_warp_curve", &m.bending_warp_curve},
+        std::pair{"bending_weft_curve", &m.bending_weft_curve}})
+    if (*curve)
+      curves.push_back(
+          {key, **curve, shell_material_table().find(key)->unit, is_guess(material, "shell", key)});
+  return curves;
 }
 
 }  // namespace muslin

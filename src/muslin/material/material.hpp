@@ -19,6 +19,7 @@ struct Material {
   std::string name;
   std::string description;
   std::string source;                ///< source of the numbers
+  std::vector<std::string> guesses;  ///< numbers that are not measured, such as "shell.bending_warp"
   bool has_lattice = true;           ///< the next ten settings are valid
   double density = 0;                ///< [kg/m³]
   double edge_modulus = 0;           ///< [N/m²]
@@ -42,10 +43,19 @@ struct MaterialNumber {
   std::string key;
   double value = 0;
   std::string unit;  ///< empty: none
+  bool guess = false;  ///< among the guesses of the material
 };
-/// Return the numbers of the material for a lattice or a shell; empty if it has none.
+/// A measured curve of a material, by its key; `unit` names the units of both numbers of a point.
+struct MaterialCurve {
+  std::string key;
+  MeasuredCurve points;
+  std::string unit;
+  bool guess = false;
+};
+/// Return the numbers and curves of the material for a lattice or a shell; empty if it has none.
 std::vector<MaterialNumber> lattice_numbers(const Material& material);
 std::vector<MaterialNumber> shell_numbers(const Material& material);
+std::vector<MaterialCurve> shell_curves(const Material& material);
 
 /// Returns the names of the materials that come with muslin, in alphabetical order. They are compiled into
 /// the library.
@@ -54,9 +64,9 @@ MUSLIN_API std::vector<std::string> material_names();
 /// Returns the material of this name. Errors: input, naming the nearest one.
 MUSLIN_API Material find_material(const std::string& name);
 
-/// Reads a material file: `name`, `description`, `source`, a table [lattice] and a table [shell] with the
-/// quantities above, one of them or both, and a table [reference] of free numbers. Errors: file; input with
-/// file, line and column.
+/// Reads a material file: `name`, `description`, `source`, a list `guesses`, a table [lattice] and a table
+/// [shell] with the quantities above, one of them or both, and a table [reference] of free numbers. Errors:
+/// file; input with file, line and column.
 MUSLIN_API Material read_material(const std::filesystem::path& file);
 MUSLIN_API Material parse_material(std::string_view text, const std::string& file);
 

@@ -1,10 +1,12 @@
 #include "muslin/material/shell_material.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "muslin/core/toml_table.hpp"
+#include "muslin/material/measured_sheet.hpp"
 #include "muslin/schema/declare.hpp"
 
 namespace muslin {
@@ -27,18 +29,37 @@ double lowest_bias(double warp, double weft, double poisson) {
 
 /// Derives missing values from given ones.
 void complete(const TomlTable& table, ShellMaterial& m) {
+  // A modulus takes the place of the base's curve.
+  if (table.has("membrane_warp")) m.warp_curve.reset();
+  if (table.has("membrane_weft")) m.weft_curve.reset();
+  if (table.has("membrane_shear")) m.shear_curve.reset();
+  if (table.has("bending_warp")) m.bending_warp_curve.reset();
+  if (table.has("bending_weft")) m.bending_weft_curve.reset();
   if (table.has("base")) return;
-  if (!table.has("membrane_weft")) m.membrane_weft = m.membrane_warp;
+  if (!table.has("membrane_weft") && !table.has("weft_curve")) {
+    m.membrane_weft = m.membrane_warp;
+    m.weft_curve = m.warp_curve;
+  }
   if (!table.has("poisson")) m.poisson = 0.25;
-  if (!table.has("membrane_shear"))
-    m.membrane_shear = std::sqrt(m.membrane_warp * m.membrane_weft) / (2 * (1 + m.poisson));
-  if (!table.has("bending_weft")) m.bending_weft = m.bending_warp;
-  if (!table.has("bending_bias")) m.bending_bias = bias_between(m.bending_warp, m.bending_weft);
+  if (!table.has("membrane_shear") && !table.has("shear_curve")) {
+    const SheetStress stress = stress_of(m);
+    m.membrane_shear = std::sqrt(stress.warp.slope(0) * stress.weft.slope(0)) / (2 * (1 + m.poisson));
+  }
+  if (!table.has("bending_weft") && !table.has("bending_weft_curve")) {
+    m.bending_weft = m.bending_warp;
+    m.bending_weft_curve = m.bending_warp_curve;
+  }
+  if (!table.has("bending_bias")) {
+    const SheetMoments moments = moments_of(m);
+    m.bending_bias = bias_between(moments.warp.slope(0), moments.weft.slope(0));
+  }
   if (!table.has("bending_damping")) m.bending_damping = m.stiffness_damping;
 }
 
 void check_bias(const ShellMaterial& m, const schema::Subject& subject) {
-  const double lowest = lowest_bias(m.bending_warp, m.bending_weft, m.poisson);
+  const SheetMoments moments = moments_of(m);
+  const double warp = moments.warp.slope(0), weft = moments.weft.slope(0);
+  const double lowest = lowest_bias(warp, weft, m.poisson);
   if (m.bending_bias >= lowest * (1 - 1e-12)) return;
   const bool bias_is_given = subject.table() == nullptr || subject.table()->has("bending_bias");
   throw subject.error(
@@ -46,12 +67,37 @@ void check_bias(const ShellMaterial& m, const schema::Subject& subject) {
       fmt::format(
           "with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m and a Poisson ratio of {:.4g} the sheet "
           "would twist by itself",
-          m.bending_bias, m.bending_warp, m.bending_weft, m.poisson),
+          m.bending_bias, warp, weft, m.poisson),
       fmt::format("give `bending_bias` at least {:.4g}", lowest));
+}
+
+void check_curves(const ShellMaterial& m, const schema::Subject& subject) {
+  for (const auto& [key, curve] :
+       {std::pair{"warp_curve", &m.warp_curve}, std::pair{"weft_curve", &m.weft_curve}}) {
+    if (!curve->has_value()) continue;
+    if (const auto problem = problem_of_strip(**curve))
+      throw subject.error(key, fmt::format("`{}` is unstable: {}", key, *problem),
+                          "leave out points where the cloth yields or tears");
+  }
+  if (!has_curves(m)) return;
+  const double highest = highest_poisson(stress_of(m));
+  if (m.poisson >= 0 && m.poisson <= highest) return;
+  throw subject.error("poisson",
+                      fmt::format("curves with a Poisson ratio of {:.4g} make an unstable sheet", m.poisson),
+                      fmt::format("give `poisson` from 0 to {:.4g}", highest));
+}
+
+/// A curve in place of a modulus.
+schema::Declaration test_curve(const char* name, std::optional<MeasuredCurve> ShellMaterial::* member,
+                               const char* modulus, double widest) {
+  return schema::curve(name, member, StressCurve::most_points)
+      .range({0, widest, false})
+      .excludes(modulus, fmt::format("`{}` stands beside `{}`, in whose place it is", name, modulus));
 }
 
 schema::Table declared() {
   using schema::number;
+  using Sheet = ShellMaterial;
   schema::Table table = schema::table_of<ShellMaterial>(
       "[shell]",
       {number("areal_density", &ShellMaterial::areal_density)
@@ -62,18 +108,33 @@ schema::Table declared() {
        number("membrane_warp", &ShellMaterial::membrane_warp)
            .unit("N/m")
            .range(sheet_modulus)
-           .required_without({"base"})
+           .required_without({"base", "warp_curve"})
+           .shown_if<Sheet>([](const Sheet& m) { return !m.warp_curve; })
            .means("force per width and strain along warp: Young's modulus × thickness"),
        number("membrane_weft", &ShellMaterial::membrane_weft)
            .unit("N/m")
            .range(sheet_modulus)
-           .otherwise("`membrane_warp`")
+           .otherwise("as warp")
+           .shown_if<Sheet>([](const Sheet& m) { return !m.weft_curve; })
            .means("along weft"),
        number("membrane_shear", &ShellMaterial::membrane_shear)
            .unit("N/m")
            .range(sheet_modulus)
            .otherwise("as in an isotropic sheet")
+           .shown_if<Sheet>([](const Sheet& m) { return !m.shear_curve; })
            .means("force per width and radian"),
+       test_curve("warp_curve", &Sheet::warp_curve, "membrane_warp", 10)
+           .unit("1, N/m")
+           .means(
+               "measured, in place of `membrane_warp`: up to 10 points `[[strain, force per width], …]` of "
+               "a strip pulled along warp"),
+       test_curve("weft_curve", &Sheet::weft_curve, "membrane_weft", 10)
+           .unit("1, N/m")
+           .otherwise("as warp")
+           .means("the same along weft"),
+       test_curve("shear_curve", &Sheet::shear_curve, "membrane_shear", 80)
+           .unit("°, N/m")
+           .means("in place of `membrane_shear`: points `[[angle, force per length], …]` of a shear test"),
        number("poisson", &ShellMaterial::poisson)
            .range({-0.99, 0.99, false})
            .otherwise("0.25")
@@ -81,12 +142,14 @@ schema::Table declared() {
        number("bending_warp", &ShellMaterial::bending_warp)
            .unit("N·m")
            .range(sheet_modulus)
-           .required_without({"base"})
+           .required_without({"base", "bending_warp_curve"})
+           .shown_if<Sheet>([](const Sheet& m) { return !m.bending_warp_curve; })
            .means("moment per width and curvature, warp bent"),
        number("bending_weft", &ShellMaterial::bending_weft)
            .unit("N·m")
            .range(sheet_modulus)
-           .otherwise("`bending_warp`")
+           .otherwise("as warp")
+           .shown_if<Sheet>([](const Sheet& m) { return !m.bending_weft_curve; })
            .means("weft bent"),
        number("bending_bias", &ShellMaterial::bending_bias)
            .unit("N·m")
@@ -94,6 +157,14 @@ schema::Table declared() {
            .otherwise("between the two")
            .means("bent at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer "
                   "resists twisting"),
+       test_curve("bending_warp_curve", &Sheet::bending_warp_curve, "bending_warp", 1e5)
+           .unit("1/m, N")
+           .means(
+               "measured, in place of `bending_warp`: up to 10 points `[[curvature, moment per width], …]`"),
+       test_curve("bending_weft_curve", &Sheet::bending_weft_curve, "bending_weft", 1e5)
+           .unit("1/m, N")
+           .otherwise("as warp")
+           .means("weft bent"),
        number("mass_damping", &ShellMaterial::mass_damping)
            .unit("1/s")
            .range(sheet_damping)
@@ -110,6 +181,7 @@ schema::Table declared() {
   table.complete = [](const TomlTable& given, void* settings) {
     complete(given, *static_cast<ShellMaterial*>(settings));
   };
+  schema::add_rule<ShellMaterial>(table, check_curves);
   schema::add_rule<ShellMaterial>(table, check_bias);
   return table;
 }

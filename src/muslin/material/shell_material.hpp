@@ -1,30 +1,46 @@
 // ShellMaterial holds the material data of a shell, per area and per width, as fabrics are measured.
 #pragma once
 
+#include <optional>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
 namespace muslin {
 
 namespace schema {
 struct Table;
 }
 
+/// Points of a test, from the origin on: (strain or angle, force), both ascending strictly. The origin need
+/// not be among them.
+using MeasuredCurve = std::vector<Vec2>;
+
 struct ShellMaterial {
   double areal_density = 0;      ///< [kg/m²]
   double membrane_warp = 0;      ///< force per width and strain along warp [N/m]
   double membrane_weft = 0;      ///< [N/m]
   double membrane_shear = 0;     ///< force per width and radian [N/m]
+  std::optional<MeasuredCurve> warp_curve;   ///< in place of membrane_warp: (strain, force per width [N/m])
+  std::optional<MeasuredCurve> weft_curve;   ///< in place of membrane_weft
+  std::optional<MeasuredCurve> shear_curve;  ///< in place of membrane_shear: (angle [degrees], force [N/m])
   double poisson = 0;            ///< of stretch and of bending, geometric mean of both directions
   double bending_warp = 0;       ///< moment per width and curvature, bending warp [N·m]
   double bending_weft = 0;       ///< [N·m]
   double bending_bias = 0;       ///< at 45° between them [N·m]
+  /// In place of bending_warp: (curvature [1/m], moment per width [N]).
+  std::optional<MeasuredCurve> bending_warp_curve;
+  std::optional<MeasuredCurve> bending_weft_curve;  ///< in place of bending_weft
   double mass_damping = 0;       ///< Rayleigh α [1/s]
   double stiffness_damping = 0;  ///< Rayleigh β of stretch and shear [s]
   double bending_damping = 0;    ///< Rayleigh β of bending [s]
 };
 
-/// The table [shell] of a material file. areal_density, membrane_warp and bending_warp are required unless
-/// there is a `base` beside them. Unless given, weft equals warp, shear is that of an isotropic sheet, bias
-/// lies between warp and weft, and bending_damping equals stiffness_damping. A bias so low that the sheet
-/// would not resist twisting is an error.
+/// The table [shell] of a material file. Required, unless there is a `base` beside them, are areal_density,
+/// membrane_warp or warp_curve, and bending_warp or its curve. Unless given, weft equals warp, shear is that
+/// of an isotropic sheet, bias lies between warp and weft, and bending_damping equals stiffness_damping. A
+/// bias so low that the sheet would not resist twisting is an error, and so is a Poisson's ratio with which
+/// curves make an unstable sheet.
 const schema::Table& shell_material_table();
 
 }  // namespace muslin

@@ -7,8 +7,8 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/core/toml_value.hpp"
-#include "muslin/material/estimates.hpp"
 #include "muslin/material/library.hpp"
+#include "muslin/material/material.hpp"
 #include "muslin/material/material_table.hpp"
 #include "muslin/material/shell_material.hpp"
 #include "muslin/report/json_list.hpp"
@@ -50,14 +50,14 @@ const TomlValue* written_material(const WrittenScene& scene, std::size_t body) {
 struct MaterialFile {
   bool in_library = false;
   TomlValue content;
-  std::vector<std::string> estimated;
+  std::vector<std::string> guesses;
 
   bool has(const std::string& table, const std::string& key) const {
     const TomlValue* numbers = content.find(table);
     return numbers != nullptr && numbers->find(key) != nullptr;
   }
-  bool estimates(const std::string& name) const {
-    return std::find(estimated.begin(), estimated.end(), name) != estimated.end();
+  bool guesses_at(const std::string& name) const {
+    return std::find(guesses.begin(), guesses.end(), name) != guesses.end();
   }
   std::string words(const char* key) const {
     const TomlValue* value = content.find(key);
@@ -66,9 +66,7 @@ struct MaterialFile {
 };
 
 MaterialFile open_material(bool in_library, std::string_view text, const std::string& name) {
-  MaterialFile file{in_library, parse_toml(text, name), {}};
-  file.estimated = estimated_numbers(file.content);
-  return file;
+  return {in_library, parse_toml(text, name), parse_material(text, name).guesses};
 }
 
 /// Finds the file of the material that the run names, or that its scene names by a path; nothing for a table
@@ -120,10 +118,10 @@ class Tracer {
     return other_material && !file_ ? NumberOrigin::changed : NumberOrigin::derived;
   }
 
-  bool is_estimated(const std::string& key) const {
+  bool is_guess(const std::string& key) const {
     const NumberOrigin from = origin(key);
     return (from == NumberOrigin::library || from == NumberOrigin::file) && file_ &&
-           file_->estimates(table_ + "." + key);
+           file_->guesses_at(table_ + "." + key);
   }
 
  private:
@@ -153,9 +151,13 @@ Fabric trace(const RunReader& run, const Json& body, const Json& reread, const T
                       written_name.ends_with(".toml"));
   for (const auto& [key, value] : material.items()) {
     const schema::Key* declared = keys.find(key);
-    if (!value.is_number() || declared == nullptr) continue;
-    fabric.numbers.push_back({key, declared->unit, declared->meaning, value.get<double>(), tracer.origin(key),
-                              tracer.is_estimated(key)});
+    if (declared == nullptr || !(value.is_number() || value.is_array())) continue;
+    FabricNumber number{key, declared->unit,     declared->meaning,   0,
+                        {},  tracer.origin(key), tracer.is_guess(key)};
+    if (value.is_number()) number.value = value.get<double>();
+    for (const Json& point : value.is_array() ? value : Json::array())
+      number.curve.emplace_back(point.at(0).get<double>(), point.at(1).get<double>());
+    fabric.numbers.push_back(std::move(number));
   }
   return fabric;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "muslin/cache/run_reader.hpp"
+#include "muslin/material/shell_material.hpp"
 
 namespace muslin {
 
@@ -13,7 +14,7 @@ enum class NumberOrigin {
   library,  ///< a material that comes with muslin
   file,     ///< a material file of the user
   scene,    ///< written in the scene file
-  changed,  ///< set otherwise than in the scene file: by --set, or by a program
+  changed,  ///< not set in the scene file but by --set or by a program
   derived,  ///< follows from other numbers, or a default
 };
 /// Returns the origin in words, such as "from the scene file".
@@ -22,20 +23,21 @@ const char* name_of(NumberOrigin origin);
 struct FabricNumber {
   std::string key, unit, meaning;  ///< as in material files
   double value = 0;
+  MeasuredCurve curve;  ///< the points of a curve, in place of `value`; else empty
   NumberOrigin origin = NumberOrigin::scene;
-  /// True for a guess that its material file marks as one.
-  bool estimated = false;
+  /// True if the material file lists it among its guesses.
+  bool guess = false;
 };
 
 struct Fabric {
   std::string body, model;
   std::string material;  ///< its name; "inline" for a table without a base
   std::string description;
-  std::string source;  ///< of the material's numbers in its own words; empty: it gives none
+  std::string source;  ///< of the numbers, as the material file states it; may be empty
   std::vector<FabricNumber> numbers;
 };
 
-/// Returns one for each body of the scene. What cannot be read, such as a scene of another version, is left
+/// Returns one per body of the scene. Parts that cannot be read, such as a scene of another version, are left
 /// out; `scene_text` is scene.toml of the run.
 std::vector<Fabric> trace_fabrics(const RunReader& run, const std::string& scene_text);
 

@@ -250,12 +250,11 @@ class Page {
       if (!fabric.description.empty()) html += paragraph(fabric.description);
       HtmlTable table({"number", "#value", "unit", "meaning", "origin"});
       for (const FabricNumber& number : fabric.numbers) {
-        table.row(number.key)
-            .number(fmt::format("{:.6g}", number.value))
-            .text(number.unit)
-            .text(number.meaning);
+        std::string value = number.curve.empty() ? fmt::format("{:.6g}", number.value) : "";
+        for (const Vec2& point : number.curve) value += fmt::format("({:.6g}, {:.6g}) ", point[0], point[1]);
+        table.row(number.key).number(value).text(number.unit).text(number.meaning);
         table.markup(escaped_markup(name_of(number.origin)) +
-                     (number.estimated ? "<span class=\"guess\">guess</span>" : ""));
+                     (number.guess ? "<span class=\"guess\">guess</span>" : ""));
       }
       html += table.html();
       if (!fabric.source.empty()) html += paragraph("Sources: " + fabric.source);

@@ -41,13 +41,17 @@ Json fabric_json(const Fabric& fabric) {
   Json json = {{"body", fabric.body},         {"model", fabric.model},
                {"material", fabric.material}, {"description", fabric.description},
                {"source", fabric.source},     {"numbers", Json::array()}};
-  for (const FabricNumber& number : fabric.numbers)
+  for (const FabricNumber& number : fabric.numbers) {
+    Json value = number.value;
+    if (!number.curve.empty()) value = Json::array();
+    for (const Vec2& point : number.curve) value.push_back({point[0], point[1]});
     json["numbers"].push_back({{"key", number.key},
-                               {"value", number.value},
+                               {"value", value},
                                {"unit", number.unit},
                                {"meaning", number.meaning},
                                {"origin", name_of(number.origin)},
-                               {"estimated", number.estimated}});
+                               {"guess", number.guess}});
+  }
   return json;
 }
 

@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::int64_t largest_whole = std::numeric_limits<std::int64_t>::max();
 
+constexpr double closest_points = 1e-6;  // of a curve
+
 std::int64_t lowest(const Key& key) {
   return std::isfinite(key.range.min) ? static_cast<std::int64_t>(key.range.min) : -largest_whole;
 }
@@ -67,6 +69,45 @@ void ColourCodec::check(const Key& key, const Vec3& v, const Subject& subject) c
   if (!v.allFinite() || v.minCoeff() < 0 || v.maxCoeff() > 1)
     throw subject.error(key.name, "a colour is red, green and blue from 0 to 1",
                         "write for example [0.2, 0.5, 0.2]");
+}
+
+TomlValue CurveCodec::write(const Key&, const Curve& curve) const {
+  TomlValue points = list({});
+  for (const Vec2& point : curve) points.items.push_back(list({real(point[0]), real(point[1])}));
+  return points;
+}
+
+CurveCodec::Curve CurveCodec::read_curve(const Key& key, const TomlTable& table) {
+  Curve curve;
+  for (const TomlValue& item : *table.array(key.name, described(key))) {
+    if (item.type != TomlValue::Type::array || item.items.size() != 2)
+      throw table.error(key.name, fmt::format("a point of `{}` is no pair of numbers", key.name),
+                        fmt::format("give {}", described(key)));
+    const std::string name = fmt::format("a number of `{}`", key.name);
+    curve.emplace_back(to_number(item.items[0], name, "", key.range), to_number(item.items[1], name, ""));
+  }
+  CurveCodec{}.check(key, curve, Subject(table));
+  return curve;
+}
+
+void CurveCodec::check(const Key& key, const Curve& curve, const Subject& subject) const {
+  const bool has_origin = !curve.empty() && curve.front() == Vec2::Zero();
+  const std::size_t count = curve.size() - (has_origin ? 1 : 0);
+  if (count == 0 || count > key.count)
+    throw subject.error(key.name, fmt::format("`{}` has {} points beside the origin", key.name, count),
+                        fmt::format("give 1 to {}, close to each other where the curve bends", key.count));
+  Vec2 before = Vec2::Zero();
+  for (std::size_t i = has_origin ? 1 : 0; i < curve.size(); ++i) {
+    const Vec2& point = curve[i];
+    const bool ascends = point[0] >= before[0] + closest_points && point[1] > before[1];
+    if (!ascends || !fits(point[0], key.range) || !fits(point[1], {0, largest_component, false}))
+      throw subject.error(key.name,
+                          fmt::format("`{}` goes from [{}, {}] to [{}, {}]", key.name, before[0], before[1],
+                                      point[0], point[1]),
+                          fmt::format("let both numbers ascend from 0, the first by {} or more, up to {}",
+                                      closest_points, key.range.max));
+    before = point;
+  }
 }
 
 const std::vector<TomlValue>& section_values(const std::string& name, const TomlTable& top) {

@@ -142,6 +142,23 @@ struct ColourCodec {
   void check(const Key& key, const Vec3& v, const Subject& subject) const;
 };
 
+/// A curve through the origin, which may be its first point or left out.
+struct CurveCodec {
+  using Curve = std::vector<Vec2>;
+
+  std::vector<Type> types() const { return {Type::curve}; }
+  Range range() const { return {}; }
+  template <class T>
+  T read(const Key& key, const TomlTable& table) const {
+    return read_curve(key, table);
+  }
+  TomlValue write(const Key&, const Curve& curve) const;
+  void check(const Key& key, const Curve& curve, const Subject& subject) const;
+
+ private:
+  static Curve read_curve(const Key& key, const TomlTable& table);
+};
+
 /// Returns the tables of a list such as [[pin]]. Errors: input, if it is not a list.
 const std::vector<TomlValue>& section_values(const std::string& name, const TomlTable& top);
 /// Returns the name of a table of a list in messages: `[[body]] flag`, or with its number.

@@ -166,6 +166,13 @@ template <class S, class T>
 Declaration direction(std::string name, T S::* member, std::string example) {
   return stored(std::move(name), member, DirectionCodec{std::move(example)});
 }
+/// A curve from the origin through at most `most` points; the range is that of the first numbers.
+template <class S, class T>
+Declaration curve(std::string name, T S::* member, int most) {
+  Key key = stored(std::move(name), member, CurveCodec{});
+  key.count = static_cast<std::size_t>(most);
+  return Declaration(std::move(key));
+}
 template <class S, class T>
 Declaration colour(std::string name, T S::* member) {
   return stored(std::move(name), member, ColourCodec{}).unit("sRGB 0 to 1");

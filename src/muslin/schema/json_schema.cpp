@@ -45,6 +45,11 @@ Json type_schema(const Key& key, Type type) {
       return list_schema(number_schema("number", key.range), 3);
     case Type::points:
       return list_schema(list_schema(number_schema("number", key.range), 3), key.count);
+    case Type::curve:
+      return {{"type", "array"},
+              {"items", list_schema({{"type", "number"}, {"minimum", 0}}, 2)},
+              {"minItems", 1},
+              {"maxItems", key.count + 1}};
     case Type::table:
       return reference(key.table());
     case Type::tables:

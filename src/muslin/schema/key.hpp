@@ -25,6 +25,7 @@ enum class Type {
   word,    ///< one of Key::choices
   vector,  ///< three numbers
   points,  ///< a list of vectors
+  curve,   ///< a list of pairs of numbers, each ascending from 0
   table,
   tables,  ///< a list of tables
 };
@@ -35,7 +36,7 @@ struct Key {
   std::string unit;                  ///< empty: none
   Range range;                       ///< of numbers and of the components of vectors
   std::vector<std::string> choices;  ///< words
-  std::size_t count = 0;             ///< of `points`; 0: any
+  std::size_t count = 0;             ///< of `points`; 0: any. Of a curve: the most
   std::string meaning;
   std::string otherwise;  ///< the default in words if it is not a constant
   bool required = false;

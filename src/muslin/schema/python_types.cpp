@@ -49,6 +49,7 @@ std::string type_of(const Key& key, Type type) {
     case Type::vector:
       return "Vector";
     case Type::points:
+    case Type::curve:
       return "Points";
     case Type::table:
       return fmt::format("\"{}\"", class_name(key.table()));

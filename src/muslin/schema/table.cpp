@@ -69,6 +69,8 @@ std::string described(const Key& key) {
                               : fmt::format("three numbers [x, y, z] [{}]", key.unit);
     case Type::points:
       return "points [[x, y, z], …]";
+    case Type::curve:
+      return "points [[x, y], …]";
     case Type::table:
     case Type::tables:
       return "a table";

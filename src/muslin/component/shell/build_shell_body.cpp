@@ -68,7 +68,8 @@ class ShellBuilder {
       rest.bounds().sizes().maxCoeff(&axis);
       weave.warp = Vec3::Unit(axis);
       const ShellMaterial& m = *settings_.material.shell;
-      if (m.membrane_warp != m.membrane_weft || m.bending_warp != m.bending_weft) {
+      if (m.membrane_warp != m.membrane_weft || m.warp_curve != m.weft_curve ||
+          m.bending_warp != m.bending_weft || m.bending_warp_curve != m.bending_weft_curve) {
         say(fmt::format(
             "the mesh has no texture coordinates; its warp is taken along {}, its longest side; set "
             "`warp` to choose it",

@@ -16,6 +16,7 @@
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/io/vtk_file.hpp"
+#include "muslin/material/measured_sheet.hpp"
 
 namespace muslin {
 namespace {
@@ -65,14 +66,14 @@ std::vector<int> ShellBody::parts() const {
 std::optional<ContactPart> ShellBody::contact_part() const {
   if (!settings.contact) return std::nullopt;
   const Triangulation cut = triangulate(mesh);
-  const ShellMaterial& m = *settings.material.shell;
+  const SheetStress stress = stress_of(*settings.material.shell);
   ContactPart part;
   part.edge = mean_edge(mesh.positions, cut.triangles);
   part.size = mesh.bounds().sizes().maxCoeff();
   part.body.self_contact = settings.self_contact;
   part.body.friction = settings.friction;
   part.body.radius = own().thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;
-  part.body.stiffness = contact_stiffness_share * std::sqrt(m.membrane_warp * m.membrane_weft);
+  part.body.stiffness = contact_stiffness_share * std::sqrt(stress.warp.slope(0) * stress.weft.slope(0));
   // A body without stretch resistance still needs contact to carry its weight.
   if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;
   part.add_mesh(mesh, cut, skin);
@@ -88,7 +89,18 @@ std::uint64_t ShellBody::shape_hash(std::uint64_t seed) const {
 
 std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
   const ShellMaterial& m = *settings.material.shell;
-  return hash_bytes(&m, sizeof m, muslin::material_hash(settings.material, 0, seed));
+  const std::array numbers = {m.areal_density, m.membrane_warp,     m.membrane_weft,  m.membrane_shear,
+                              m.poisson,       m.bending_warp,      m.bending_weft,   m.bending_bias,
+                              m.mass_damping,  m.stiffness_damping, m.bending_damping};
+  std::uint64_t hash =
+      hash_bytes(numbers.data(), sizeof numbers, muslin::material_hash(settings.material, 0, seed));
+  std::uint64_t place = 0;
+  for (const auto* curve :
+       {&m.warp_curve, &m.weft_curve, &m.shear_curve, &m.bending_warp_curve, &m.bending_weft_curve}) {
+    ++place;
+    if (*curve) hash = hash_bytes((*curve)->data(), (*curve)->size() * sizeof(Vec2), hash + place);
+  }
+  return hash;
 }
 
 void ShellBody::write_stages(const std::filesystem::path& folder, const Progress& /*progress*/) const {
@@ -117,6 +129,8 @@ std::string ShellBody::description_json() const {
 std::string ShellBody::description() const {
   const BodyStatistics& s = statistics;
   const ShellMaterial& m = *settings.material.shell;
+  const SheetStress stress = stress_of(m);
+  const SheetMoments moments = moments_of(m);
   std::string text =
       fmt::format("body {}: {} ({}, shell)\n", name, settings.mesh, counted(mesh.face_count(), "polygon"));
   text += fmt::format("  shell       {} vertices, {} triangles, {} hinges, edges of {:.4g} m on average\n",
@@ -126,7 +140,15 @@ std::string ShellBody::description() const {
   text += fmt::format(
       "  stiffness   warp {:.4g}, weft {:.4g}, shear {:.4g} N/m; bending {:.3g}, {:.3g}, bias "
       "{:.3g} N·m\n",
-      m.membrane_warp, m.membrane_weft, m.membrane_shear, m.bending_warp, m.bending_weft, m.bending_bias);
+      stress.warp.slope(0), stress.weft.slope(0), stress.shear.slope(0), moments.warp.slope(0),
+      moments.weft.slope(0), m.bending_bias);
+  if (has_curves(m))
+    text += fmt::format("  curves      at most warp {:.4g}, weft {:.4g}, shear {:.4g} N/m\n",
+                        stress.warp.greatest_slope(), stress.weft.greatest_slope(),
+                        stress.shear.greatest_slope());
+  if (has_bending_curves(m))
+    text += fmt::format("  curves      bending at least warp {:.3g}, weft {:.3g} N·m\n",
+                        moments.warp.least_slope(), moments.weft.least_slope());
   if (own().stretch_limit)
     text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *own().stretch_limit);
   return text;

@@ -97,7 +97,7 @@ void finish(const TomlTable& table, const std::filesystem::path& folder, BodySet
         "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",
         table.title(), low_stretch_limit, low_stretch_limit));
   }
-  if (body.material.shell->membrane_shear == 0)
+  if (body.material.shell->membrane_shear == 0 && !body.material.shell->shear_curve)
     warnings.push_back(table.title() + ": a material without `membrane_shear` does not resist shear");
 }
 

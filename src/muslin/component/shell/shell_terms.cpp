@@ -6,9 +6,11 @@
 
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/energy/element_energy.hpp"
+#include "muslin/energy/measured_membrane.hpp"
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/shell_bending.hpp"
 #include "muslin/energy/stretch_limit.hpp"
+#include "muslin/material/measured_sheet.hpp"
 #include "muslin/potential/mass_damping.hpp"
 
 namespace muslin {
@@ -16,24 +18,28 @@ namespace {
 
 class ShellTerms {
  public:
-  explicit ShellTerms(ShellBody& body) : body_(body), material_(*body.settings.material.shell) {}
+  explicit ShellTerms(ShellBody& body)
+      : body_(body), material_(*body.settings.material.shell), stress_(stress_of(material_)) {}
 
   void add(std::span<const std::uint8_t> held) {
     const ShellMaterial& m = material_;
     const auto pattern = block_pattern(body_.shell);
-    const auto membrane = std::make_shared<MembraneEnergy>(
-        body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson}, pattern);
+    const auto membrane = membrane_on(pattern);
     add("membrane", membrane);
-    add_blocks(*membrane, 3);
+    // The stable step is that of the stiffest state.
+    add_blocks(MembraneEnergy(body_.shell, {stress_.warp.greatest_slope(), stress_.weft.greatest_slope(),
+                                            stress_.shear.greatest_slope(), m.poisson}),
+               3);
     // The limit has no stiffness at rest, so that the stable step does not know it.
     if (body_.own().stretch_limit) {
       const double limit = *body_.own().stretch_limit;
-      const double stiffness = stretch_limit_stiffness(std::max(m.membrane_warp, m.membrane_weft),
-                                                       body_.statistics.mass, body_.shell.mean_edge, limit);
+      const double strain = 0.5 * (limit * limit - 1);
+      const double stiffness =
+          stretch_limit_stiffness(std::max(stress_.warp.slope(strain), stress_.weft.slope(strain)),
+                                  body_.statistics.mass, body_.shell.mean_edge, limit);
       add("stretch limit", std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness, pattern));
     }
-    const auto bending = std::make_shared<ShellBending>(
-        body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias, m.poisson}, pattern, held);
+    const auto bending = bending_on(pattern, held);
     add("bending", bending);
     add_blocks(*bending, 2 * 4);  // blocks of half the stiffness that bounds it
     if (m.stiffness_damping > 0)
@@ -47,6 +53,27 @@ class ShellTerms {
   }
 
  private:
+  std::shared_ptr<const ElementEnergy> membrane_on(std::shared_ptr<const SymmetricPattern> pattern) const {
+    const ShellMaterial& m = material_;
+    if (has_curves(m))
+      return std::make_shared<MeasuredMembrane>(body_.shell, stress_, m.poisson, std::move(pattern));
+    return std::make_shared<MembraneEnergy>(
+        body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson},
+        std::move(pattern));
+  }
+  std::shared_ptr<const ElementEnergy> bending_on(std::shared_ptr<const SymmetricPattern> pattern,
+                                                  std::span<const std::uint8_t> held) const {
+    const ShellMaterial& m = material_;
+    if (has_bending_curves(m)) {
+      const SheetMoments moments = moments_of(m);
+      return std::make_shared<ShellBending>(
+          body_.shell, BendingCurves{moments.warp, moments.weft, m.bending_bias, m.poisson},
+          std::move(pattern), held);
+    }
+    return std::make_shared<ShellBending>(
+        body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias, m.poisson},
+        std::move(pattern), held);
+  }
   void add(const char* name, std::shared_ptr<const Potential> potential) {
     body_.potentials.push_back({name, EnergyRole::elastic, std::move(potential)});
   }
@@ -62,6 +89,7 @@ class ShellTerms {
 
   ShellBody& body_;
   const ShellMaterial& material_;
+  SheetStress stress_;
   std::vector<Mat3> blocks_;
 };
 

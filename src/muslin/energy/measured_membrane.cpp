@@ -1,0 +1,47 @@
+#include "muslin/energy/measured_membrane.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "muslin/core/error.hpp"
+#include "muslin/energy/elements_methods.hpp"
+
+namespace muslin {
+
+template class Elements<TriangleStencil, MeasuredMembraneLaw>;
+
+namespace {
+
+MeasuredMembraneLaw::Constants constants_of(const SheetStress& stress, double poisson) {
+  require(poisson >= 0 && poisson < 1 && poisson <= highest_poisson(stress),
+          "a sheet of these curves and this Poisson ratio is unstable", "give 0 to highest_poisson");
+  const double warp = stress.warp.slope(0), weft = stress.weft.slope(0);
+  const double square = poisson * poisson, narrowed = square / (1 - square);
+  return {stress.warp.plus(narrowed * warp), stress.weft.plus(narrowed * weft), stress.shear,
+          poisson * std::sqrt(warp * weft) / (1 - square)};
+}
+
+/// The masses hold what buckles only where the stiffest state leaves them digits.
+TriangleStencil stencil_of(const ElementSlabs<3>& slabs, const Shell& shell,
+                           const MeasuredMembraneLaw::Constants& c, bool bounded) {
+  TriangleStencil stencil(slabs, shell);
+  const PlaneModuli stiffest{c.warp.greatest_slope(), c.coupling, c.weft.greatest_slope(),
+                             c.shear.greatest_slope()};
+  if (bounded) stencil.use_masses(slabs, shell, std::vector<PlaneModuli>(shell.triangles.size(), stiffest));
+  return stencil;
+}
+
+}  // namespace
+
+MeasuredMembrane::MeasuredMembrane(std::shared_ptr<const Slabs> slabs, const Shell& shell,
+                                   const MeasuredMembraneLaw::Constants& constants,
+                                   std::shared_ptr<const SymmetricPattern> pattern)
+    : Elements(slabs, stencil_of(*slabs, shell, constants, pattern != nullptr),
+               LawConstants<MeasuredMembraneLaw>(constants), pattern) {}
+
+MeasuredMembrane::MeasuredMembrane(const Shell& shell, const SheetStress& stress, double poisson,
+                                   std::shared_ptr<const SymmetricPattern> pattern)
+    : MeasuredMembrane(triangle_slabs(shell), shell, constants_of(stress, poisson), std::move(pattern)) {}
+
+}  // namespace muslin
