@@ -60,7 +60,7 @@ std::string shell_table() {
 
 /// Superscripts and dots as terminals without Unicode show them.
 std::string plain(std::string unit) {
-  for (const auto& [from, to] : {std::pair{"²", "2"}, {"³", "3"}, {"·", " "}})
+  for (const auto& [from, to] : {std::pair{"²", "2"}, {"³", "3"}, {"·", " "}, {"°", "degrees"}})
     for (std::size_t at = unit.find(from); at != std::string::npos; at = unit.find(from))
       unit.replace(at, std::string_view(from).size(), to);
   return unit;
