@@ -96,7 +96,7 @@ TEST(RunReport, TracesTheNumbersOfFabrics) {
   const Json bending = number(library, "bending_warp");
   EXPECT_EQ(bending["value"], 1.2e-5);
   EXPECT_EQ(bending["unit"], "N·m");
-  EXPECT_THAT(bending["meaning"], HasSubstr("warp bent"));
+  EXPECT_THAT(bending["meaning"], HasSubstr("when warp bends"));
   EXPECT_EQ(bending["origin"], "from the material library");
   EXPECT_TRUE(bending["guess"]);
   EXPECT_FALSE(number(library, "membrane_warp")["guess"]);

@@ -116,7 +116,7 @@ schema::Table declared() {
            .range(sheet_modulus)
            .otherwise("as warp")
            .shown_if<Sheet>([](const Sheet& m) { return !m.weft_curve; })
-           .means("along weft"),
+           .means("force per width and strain along weft"),
        number("membrane_shear", &ShellMaterial::membrane_shear)
            .unit("N/m")
            .range(sheet_modulus)
@@ -144,19 +144,19 @@ schema::Table declared() {
            .range(sheet_modulus)
            .required_without({"base", "bending_warp_curve"})
            .shown_if<Sheet>([](const Sheet& m) { return !m.bending_warp_curve; })
-           .means("moment per width and curvature, warp bent"),
+           .means("moment per width and curvature when warp bends"),
        number("bending_weft", &ShellMaterial::bending_weft)
            .unit("N·m")
            .range(sheet_modulus)
            .otherwise("as warp")
            .shown_if<Sheet>([](const Sheet& m) { return !m.bending_weft_curve; })
-           .means("weft bent"),
+           .means("moment per width and curvature when weft bends"),
        number("bending_bias", &ShellMaterial::bending_bias)
            .unit("N·m")
            .range(sheet_modulus)
            .otherwise("between the two")
-           .means("bent at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer "
-                  "resists twisting"),
+           .means("moment per width and curvature for bending at 45°; at least (warp + weft + 2 ν √(warp "
+                  "weft))/4, where the sheet no longer resists twisting"),
        test_curve("bending_warp_curve", &Sheet::bending_warp_curve, "bending_warp", 1e5)
            .unit("1/m, N")
            .means(
@@ -164,7 +164,7 @@ schema::Table declared() {
        test_curve("bending_weft_curve", &Sheet::bending_weft_curve, "bending_weft", 1e5)
            .unit("1/m, N")
            .otherwise("as warp")
-           .means("weft bent"),
+           .means("moment per width and curvature when weft bends"),
        number("mass_damping", &ShellMaterial::mass_damping)
            .unit("1/s")
            .range(sheet_damping)
