@@ -17,7 +17,7 @@ Path = Union[str, os.PathLike[str], Mesh]
 KeyframesOfANumber = TypedDict(
     "KeyframesOfANumber",
     {
-        "time": Required[float],  # after that of the one before [s]
+        "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "value": Required[float],  # the number at that time
     },
     total=False,
@@ -28,7 +28,7 @@ WhereLine = TypedDict(
     {
         "from": Required[Vector],  # one end [m]
         "to": Required[Vector],  # the other end [m]
-        "distance": Optional[float],  # greatest distance of a chosen vertex [m]
+        "distance": Optional[float],  # greatest distance of a selected vertex [m]
     },
     total=False,
 )
@@ -37,8 +37,8 @@ WherePlane = TypedDict(
     "WherePlane",
     {
         "point": Required[Vector],  # a point of the plane [m]
-        "normal": Required[Vector],  # across the plane
-        "distance": Optional[float],  # greatest distance of a chosen vertex [m]
+        "normal": Required[Vector],  # normal of the plane
+        "distance": Optional[float],  # greatest distance of a selected vertex [m]
     },
     total=False,
 )
@@ -63,7 +63,7 @@ ANumberOverTime = TypedDict(
 KeyframesOfWind = TypedDict(
     "KeyframesOfWind",
     {
-        "time": Required[float],  # after that of the one before [s]
+        "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "value": Required[Vector],  # `velocity` at that time [m/s]
     },
     total=False,
@@ -72,7 +72,7 @@ KeyframesOfWind = TypedDict(
 KeyframesOfPoint = TypedDict(
     "KeyframesOfPoint",
     {
-        "time": Required[float],  # after that of the one before [s]
+        "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "value": Required[Vector],  # `force` at that time [N]
     },
     total=False,
@@ -81,7 +81,7 @@ KeyframesOfPoint = TypedDict(
 KeyframesOfGravity = TypedDict(
     "KeyframesOfGravity",
     {
-        "time": Required[float],  # after that of the one before [s]
+        "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "value": Required[Vector],  # `acceleration` at that time [m/s²]
     },
     total=False,
@@ -103,9 +103,9 @@ Where = TypedDict(
 KeyframesOfAMotion = TypedDict(
     "KeyframesOfAMotion",
     {
-        "time": Required[float],  # after that of the one before [s]
+        "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "translate": Optional[Vector],  # displacement [m]
-        "rotate": Optional[Vector],  # turn about `pivot`: about the x axis, then y, then z [degrees]
+        "rotate": Optional[Vector],  # rotation about `pivot`: about the x axis, then y, then z [degrees]
     },
     total=False,
 )
@@ -116,17 +116,17 @@ MaterialOfAShell = TypedDict(
         "base": Optional[str],  # a material by name or path that has `[shell]` numbers; the other keys change it
         "areal_density": Optional[float],  # mass per area [kg/m²]
         "membrane_warp": Optional[float],  # force per width and strain along warp: Young's modulus × thickness [N/m]
-        "membrane_weft": Optional[float],  # along weft [N/m]
+        "membrane_weft": Optional[float],  # force per width and strain along weft [N/m]
         "membrane_shear": Optional[float],  # force per width and radian [N/m]
         "warp_curve": Optional[Points],  # measured, in place of `membrane_warp`: up to 10 points `[[strain, force per width], …]` of a strip pulled along warp [1, N/m]
         "weft_curve": Optional[Points],  # the same along weft [1, N/m]
         "shear_curve": Optional[Points],  # in place of `membrane_shear`: points `[[angle, force per length], …]` of a shear test [°, N/m]
         "poisson": Optional[float],  # of stretch and of bending: geometric mean of the two directions' Poisson's ratios
-        "bending_warp": Optional[float],  # moment per width and curvature, warp bent [N·m]
-        "bending_weft": Optional[float],  # weft bent [N·m]
-        "bending_bias": Optional[float],  # bent at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer resists twisting [N·m]
+        "bending_warp": Optional[float],  # moment per width and curvature when warp bends [N·m]
+        "bending_weft": Optional[float],  # moment per width and curvature when weft bends [N·m]
+        "bending_bias": Optional[float],  # moment per width and curvature for bending at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer resists twisting [N·m]
         "bending_warp_curve": Optional[Points],  # measured, in place of `bending_warp`: up to 10 points `[[curvature, moment per width], …]` [1/m, N]
-        "bending_weft_curve": Optional[Points],  # weft bent [1/m, N]
+        "bending_weft_curve": Optional[Points],  # moment per width and curvature when weft bends [1/m, N]
         "mass_damping": Optional[float],  # Rayleigh's α: slows all motion [1/s]
         "stiffness_damping": Optional[float],  # Rayleigh's β of stretch and shear [s]
         "bending_damping": Optional[float],  # Rayleigh's β of bending [s]
@@ -140,14 +140,14 @@ MaterialOfALattice = TypedDict(
         "base": Optional[str],  # a material by name or path; the other keys change it
         "shear_modulus": Optional[float],  # of springs, only with `youngs_modulus` [N/m²]
         "density": Optional[float],  # mass per volume [kg/m³]
-        "edge_modulus": Optional[float],  # of springs along voxel edges; a spring's constant is modulus × voxel width [N/m²]
-        "face_diagonal_modulus": Optional[float],  # of springs along face diagonals [N/m²]
-        "body_diagonal_modulus": Optional[float],  # of springs along body diagonals [N/m²]
-        "volume_modulus": Optional[float],  # stiffness against a change of volume of each voxel; 0 is off [N/m²]
+        "edge_modulus": Optional[float],  # modulus of springs along voxel edges; a spring's constant is modulus × voxel width [N/m²]
+        "face_diagonal_modulus": Optional[float],  # modulus of springs along face diagonals [N/m²]
+        "body_diagonal_modulus": Optional[float],  # modulus of springs along body diagonals [N/m²]
+        "volume_modulus": Optional[float],  # resistance of each voxel to a change of volume; 0 is off [N/m²]
         "mass_damping": Optional[float],  # Rayleigh's α: slows all motion, like a viscous fluid [1/s]
-        "stiffness_damping": Optional[float],  # Rayleigh's β: slows stretching only [s]
+        "stiffness_damping": Optional[float],  # Rayleigh's β: damps stretching only [s]
         "law": Optional[Literal["springs", "neo_hookean"]],  # `neo_hookean`: a solid of tetrahedra in place of springs, with a stated E and ν
-        "youngs_modulus": Optional[float],  # of the solid; in a scene with springs, that of a large block along its axes, in place of the three moduli [N/m²]
+        "youngs_modulus": Optional[float],  # Young's modulus of the solid; with springs, of a large block along its axes, in place of the three moduli [N/m²]
         "poisson": Optional[float],  # Poisson's ratio of the solid
     },
     total=False,
@@ -167,7 +167,7 @@ Pressure = TypedDict(
     "Pressure",
     {
         "name": Optional[str],  # name in messages
-        "body": Optional[str],  # a shell that is closed, or nearly: flat lids close its holes
+        "body": Optional[str],  # a shell that is closed or nearly closed; flat lids close its holes
         "pressure": Required[Union[float, "ANumberOverTime"]],  # excess over the outside, constant or `{ keyframes = [{ time = …, value = … }, …] }`; of a gas: its excess while the surface encloses the volume at rest [Pa]
         "gas": Optional[bool],  # `true`: a fixed amount of gas at a constant temperature, whose pressure falls as the volume grows
         "atmosphere": Optional[float],  # pressure outside, for a gas [Pa]
@@ -183,7 +183,7 @@ GravityForce = TypedDict(
         "name": Optional[str],  # name in messages
         "type": Required[Literal["gravity"]],  # `"gravity"`, `"point"` or `"wind"`
         "body": Optional[str],  # the body it acts on
-        "acceleration": Optional[Vector],  # the same for everything it acts on [m/s²]
+        "acceleration": Optional[Vector],  # acceleration of all bodies it acts on [m/s²]
         "keyframes": Optional[Sequence["KeyframesOfGravity"]],  # the value over time in place of a constant: a list of tables, linear between them; times ascend
         "from": Optional[float],  # time when it begins to act [s]
         "until": Optional[float],  # time when it ends, after `from` [s]
@@ -198,7 +198,7 @@ PointForce = TypedDict(
         "type": Required[Literal["point"]],  # `"gravity"`, `"point"` or `"wind"`
         "body": Optional[str],  # a body, or a collider with a density; must be given if there are several
         "where": Optional["Where"],  # selection of vertices; for a collider with a density those of its mesh, or, without `where`, its centre of mass
-        "force": Optional[Vector],  # on each of the chosen vertices [N]
+        "force": Optional[Vector],  # force on each selected vertex [N]
         "keyframes": Optional[Sequence["KeyframesOfPoint"]],  # the value over time in place of a constant: a list of tables, linear between them; times ascend
         "from": Optional[float],  # time when it begins to act [s]
         "until": Optional[float],  # time when it ends, after `from` [s]
@@ -212,7 +212,7 @@ WindForce = TypedDict(
         "name": Optional[str],  # name in messages
         "type": Required[Literal["wind"]],  # `"gravity"`, `"point"` or `"wind"`
         "body": Optional[str],  # the body it acts on
-        "velocity": Optional[Vector],  # the mean velocity of the air [m/s]
+        "velocity": Optional[Vector],  # mean velocity of the air [m/s]
         "keyframes": Optional[Sequence["KeyframesOfWind"]],  # the value over time in place of a constant: a list of tables, linear between them; times ascend
         "from": Optional[float],  # time when it begins to act [s]
         "until": Optional[float],  # time when it ends, after `from` [s]
@@ -257,12 +257,12 @@ PlaneCollider = TypedDict(
     {
         "name": Optional[str],  # different for each body and collider
         "shape": Required[Literal["plane"]],  # `"plane"`, `"sphere"`, `"capsule"`, `"box"` or `"mesh"`
-        "center": Optional[Vector],  # any point of it [m]
+        "center": Optional[Vector],  # any point of the plane [m]
         "normal": Optional[Vector],  # points to the side where bodies are; they cannot reach the other side
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean
+        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -281,7 +281,7 @@ SphereCollider = TypedDict(
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean
+        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -300,7 +300,7 @@ CapsuleCollider = TypedDict(
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean
+        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -320,7 +320,7 @@ BoxCollider = TypedDict(
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean
+        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -337,14 +337,14 @@ MeshCollider = TypedDict(
         "scale": Optional[Union[float, Vector]],  # a number or one per axis; applied first
         "sequence": Optional[Path],  # motion, in place of `keyframes`: a file with the position of every vertex of the mesh per frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. `translate`, `rotate` and `scale` apply to it as to the mesh
         "frame_rate": Optional[float],  # frames per second of the sequence; not for an `.mdd`, which stores its own frame times [1/s]
-        "start": Optional[float],  # time of the first sample; the collider stands still before the first and after the last sample [s]
+        "start": Optional[float],  # time of the first sample; the collider is static before the first and after the last sample [s]
         "density": Optional[float],  # makes it a rigid body of this density; a mesh must be closed. Without it gravity and other forces do not act on it [kg/m³]
         "velocity": Optional[Vector],  # at the start; only with a density [m/s]
         "angular_velocity": Optional[Vector],  # at the start, about its centre of mass, along the axis of rotation; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean
+        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -360,11 +360,11 @@ LatticeBody = TypedDict(
         "model": Optional[Literal["lattice"]],  # `"lattice"`: voxels with springs, filled into the mesh · `"shell"`: the mesh itself as [thin cloth](shells.md)
         "thickness": Optional[float],  # of a lattice that is a sheet: an open mesh, or one that encloses nothing. An open mesh with small holes is filled as a solid unless `thickness` is given [m]
         "voxel_width": Required[float],  # edge of a voxel: halving it doubles the detail and takes at least eight times as long for a solid, four times for a sheet [m]
-        "voxels": Optional[Literal["cover", "threshold"]],  # `"cover"`: every voxel that meets the solid · `"threshold"`: every voxel whose centre is nearer than `threshold`
+        "voxels": Optional[Literal["cover", "threshold"]],  # `"cover"`: every voxel that meets the solid · `"threshold"`: every voxel whose centre has a signed distance below `threshold`
         "threshold": Optional[float],  # signed distance, negative inside; only with `voxels = "threshold"` [voxel widths]
-        "bracing": Optional[Literal["kuhn", "full"]],  # `"kuhn"`: springs along the edges of six tetrahedra a voxel · `"full"`: all diagonals, the same stiffness in mirrored directions
-        "mass": Optional[Literal["solid", "cells"]],  # `"solid"`: a voxel weighs, and is as stiff as, the share of it that the solid fills · `"cells"`: every voxel counts full
-        "boundary_springs": Optional[Literal["full", "shared"]],  # `"full"`: springs on the surface are as stiff as inside · `"shared"`: by the share of voxels around them, as a solid cut out of a block. A sheet of one voxel is 1.75 times too stiff in stretch and 4.5 times in bending without
+        "bracing": Optional[Literal["kuhn", "full"]],  # `"kuhn"`: springs along the edges of six tetrahedra per voxel · `"full"`: all diagonals, equally stiff in mirrored directions
+        "mass": Optional[Literal["solid", "cells"]],  # `"solid"`: mass and stiffness of a voxel are scaled by the share that the solid fills · `"cells"`: every voxel has full mass and stiffness
+        "boundary_springs": Optional[Literal["full", "shared"]],  # `"full"`: springs on the surface are as stiff as inside · `"shared"`: scaled by the share of voxels around them, as in a solid cut out of a block. Without it a sheet of one voxel is 1.75 times too stiff in stretch and 4.5 times in bending
         "material": Required[Union[str, "MaterialOfALattice"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
         "translate": Optional[Vector],  # applied last [m]
         "rotate": Optional[Vector],  # about the x axis, then y, then z [degrees]
@@ -372,7 +372,7 @@ LatticeBody = TypedDict(
         "velocity": Optional[Vector],  # at the start [m/s]
         "contact": Optional[bool],  # `false` excludes the body from contact
         "self_contact": Optional[bool],  # `false` excludes contact of the body with itself
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean
+        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour of the body in pictures: red, green, blue [sRGB 0 to 1]
     },
     total=False,
@@ -387,7 +387,7 @@ ShellBody = TypedDict(
         "thickness": Optional[float],  # thickness in contact [m]
         "rest_mesh": Optional[Path],  # a mesh with the same polygons in the stress-free shape; `scale` applies to it
         "warp": Optional[Vector],  # direction of the warp threads in the mesh as modelled
-        "stretch_limit": Optional[float],  # largest stretch of a triangle in any direction, as length over rest length; 1.05 is 5 % longer
+        "stretch_limit": Optional[float],  # largest stretch of a triangle in any direction, as length over rest length; 1.05 allows 5 %
         "material": Required[Union[str, "MaterialOfAShell"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
         "translate": Optional[Vector],  # applied last [m]
         "rotate": Optional[Vector],  # about the x axis, then y, then z [degrees]
@@ -395,7 +395,7 @@ ShellBody = TypedDict(
         "velocity": Optional[Vector],  # at the start [m/s]
         "contact": Optional[bool],  # `false` excludes the body from contact
         "self_contact": Optional[bool],  # `false` excludes contact of the body with itself
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; [of a pair](#contact) the geometric mean
+        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour of the body in pictures: red, green, blue [sRGB 0 to 1]
     },
     total=False,
@@ -435,7 +435,7 @@ Scene = TypedDict(
         "contact": Optional["Contact"],  # contact distance and friction
         "pin": Optional[Sequence["Pin"]],  # prescribed vertices
         "force": Optional[Sequence["Force"]],  # gravity, point forces, wind; without a gravity force there is no gravity
-        "pressure": Optional[Sequence["Pressure"]],  # pressures inside of shells
+        "pressure": Optional[Sequence["Pressure"]],  # pressures inside shells
         "probe": Optional[Sequence["Probe"]],  # points whose path is written to `probes.csv`
     },
     total=False,
