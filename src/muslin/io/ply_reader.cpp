@@ -234,7 +234,8 @@ class PlyReader {
     const double count = number(*property.count);
     const std::size_t least = format_ == Format::ascii ? 2 : size_of(property.type);
     const std::size_t left = bytes_.size() - (format_ == Format::ascii ? scanner_.offset() : at_);
-    if (!(count >= 0) || count != std::floor(count) || count > static_cast<double>((left + 1) / least))
+    const std::size_t most = (left + 1) / least;
+    if (!(count >= 0) || count != std::floor(count) || count > static_cast<double>(most))
       refuse_entry("entry", "has a list of impossible length");
     std::vector<double>* values = property.role == Role::corners      ? &corners_
                                   : property.role == Role::corner_uvs ? &corner_uvs_

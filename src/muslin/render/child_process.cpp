@@ -14,8 +14,6 @@
 
 #include "muslin/core/error.hpp"
 
-extern char** environ;
-
 namespace muslin {
 namespace {
 
