@@ -84,10 +84,6 @@ std::shared_ptr<const FormCoupling> difference_of(const Shell& shell, const Hing
   return difference;
 }
 
-}  // namespace
-
-namespace {
-
 /// The plate of these rigidities along the threads, with the twisting rigidity of the unbent curves and the
 /// coupling of their least slopes.
 BendingModuli plate_of(const BendingCurves& c, double warp, double weft) {
