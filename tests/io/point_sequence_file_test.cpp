@@ -89,7 +89,7 @@ TEST(PointSequence, RefusesDamagedCaches) {
   EXPECT_THAT(refusal(pc2.substr(0, pc2.size() - 1), ".pc2"),
               testing::HasSubstr("promises 4 samples of 2 points"));
   EXPECT_THAT(refusal(mdd.substr(0, mdd.size() - 1), ".mdd"), testing::HasSubstr("cut off"));
-  EXPECT_THAT(refusal(mdd, ".pc2"), testing::HasSubstr("no PC2"));
+  EXPECT_THAT(refusal(mdd, ".pc2"), testing::HasSubstr("this is not a PC2 point cache"));
   for (std::size_t length : {0u, 7u, 8u, 31u, 32u, 40u}) {
     EXPECT_NE(refusal(pc2.substr(0, length), ".pc2"), "") << length;
     EXPECT_NE(refusal(mdd.substr(0, length), ".mdd"), "") << length;
@@ -101,7 +101,7 @@ TEST(PointSequence, RefusesDamagedCaches) {
   bad = pc2;
   const float rate = 0;
   std::memcpy(bad.data() + 24, &rate, 4);
-  EXPECT_THAT(refusal(bad, ".pc2"), testing::HasSubstr("sample 1 does not come after"));
+  EXPECT_THAT(refusal(bad, ".pc2"), testing::HasSubstr("the time of sample 1 is not after the previous one"));
 }
 
 }  // namespace

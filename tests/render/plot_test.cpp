@@ -47,7 +47,7 @@ TEST(Plot, SvgIsWellFormedAndEscapesText) {
   plot.title = "a < b & \"c\"\n";
   const std::string text = plot_svg(plot);
   EXPECT_TRUE(test::is_well_formed(text)) << text;
-  EXPECT_NE(text.find("a &lt; b &amp; &quot;c&quot;</text>"), std::string::npos);
+  EXPECT_NE(text.find("a &lt; b &amp; &quot;c&quot;"), std::string::npos);
   EXPECT_NE(text.find("time [s]"), std::string::npos);
   EXPECT_FALSE(test::is_well_formed("<?xml?><a><b></a>"));
 }

@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Scene& s) { s.bodies[0].velocity.x() = nan; }},
         Mistake{"[[body]] `block`: `model` is not one of its choices",
                 [](Scene& s) { s.bodies[0].model = "rigid"; }},
-        Mistake{"[[body]] `block`: `law` is none of its choices",
+        Mistake{"[[body]] `block`: `law` is not one of its choices",
                 [](Scene& s) { s.bodies[0].material.law = "rubber"; }},
         Mistake{"[[body]] `sheet`: another one has its name", [](Scene& s) { s.bodies[0].name = "sheet"; }},
         Mistake{"[[body]]: it has no name", [](Scene& s) { s.bodies[0].name.clear(); }},
