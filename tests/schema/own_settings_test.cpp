@@ -90,7 +90,7 @@ TEST(OwnSettings, AreReadCompletedWrittenAndCheckedWhereTheirWordIsChosen) {
     boat_table().check(boat, subject);
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("boat: `drive` is none of its choices"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("boat: `drive` is not one of its choices"));
   }
   EXPECT_THROW(read("drive = 'oars'\narea = 1"), Error);
 }
