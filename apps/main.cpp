@@ -107,4 +107,5 @@ int run(int argc, char** argv) {
 
 }  // namespace muslin::app
 
+// NOLINTNEXTLINE(bugprone-exception-escape): only if memory for the message of an error runs out
 int main(int argc, char** argv) { return muslin::app::run(argc, argv); }

@@ -487,7 +487,7 @@ void RunWriter::finish(RunStatus status, const std::string& reason) {
 void RunWriter::abandon(const std::string& reason) {
   try {
     impl_->write_summary(RunStatus::failed, reason);
-  } catch (const Error&) {
+  } catch (const Error&) {  // NOLINT(bugprone-empty-catch)
     // A full disk refuses this as well; the caller reports what filled it.
   }
 }
