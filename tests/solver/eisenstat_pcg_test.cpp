@@ -11,20 +11,34 @@
 #include <gtest/gtest.h>
 
 #include "muslin/core/parallel.hpp"
+#include "muslin/energy/neo_hookean_energy.hpp"
 #include "muslin/energy/spring_energy.hpp"
 
 namespace muslin {
 namespace {
 
-/// A crumpled box of springs, some of its vertices held, and a few vertices more that nothing couples.
-class EisenstatPcgTest : public testing::TestWithParam<Vec3i> {
+/// The couplings of springs are central, those of tetrahedra full.
+struct Box {
+  Vec3i extent;
+  bool solid = false;
+
+  std::unique_ptr<Potential> energy() const {
+    const Lattice lattice = test::box_lattice(extent);
+    if (solid)
+      return std::make_unique<NeoHookeanEnergy>(lattice, SolidModuli{20000, 0.3},
+                                                tetrahedron_pattern(lattice));
+    return std::make_unique<SpringEnergy>(build_springs(lattice, Bracing::kuhn), 1,
+                                          std::array<double, 3>{20000, 100, 100});
+  }
+};
+
+/// A crumpled box, some of its vertices held, and a few vertices more that nothing couples.
+class EisenstatPcgTest : public testing::TestWithParam<Box> {
  protected:
   static constexpr std::size_t loose = 3;
   void SetUp() override {
-    const Lattice lattice = test::box_lattice(GetParam());
-    springs_ = std::make_unique<SpringEnergy>(build_springs(lattice, Bracing::kuhn), 1,
-                                              std::array<double, 3>{20000, 100, 100});
-    x_ = test::rest_positions(lattice);
+    energy_ = GetParam().energy();
+    x_ = test::rest_positions(test::box_lattice(GetParam().extent));
     const std::vector<Vec3> noise = test::random_vectors(x_.size(), 0.2, 4);
     for (std::size_t v = 0; v < x_.size(); ++v) x_[v] += noise[v];
     body_ = x_.size();
@@ -34,7 +48,7 @@ class EisenstatPcgTest : public testing::TestWithParam<Vec3i> {
     fixed_.assign(x_.size(), 0);
     fixed_[0] = fixed_[body_ / 2] = 1;
     h_.reset(masses_, fixed_, 1.0 / 240 / 240);
-    springs_->linearize(std::span(x_).first(body_), h_, 0);
+    energy_->linearize(std::span(x_).first(body_), h_, 0);
     h_.finish();
   }
   std::vector<Vec3> free_vectors(unsigned seed) const {
@@ -50,7 +64,7 @@ class EisenstatPcgTest : public testing::TestWithParam<Vec3i> {
     return sum;
   }
 
-  std::unique_ptr<SpringEnergy> springs_;
+  std::unique_ptr<Potential> energy_;
   std::vector<Vec3> x_;
   std::size_t body_ = 0;
   std::vector<double> masses_;
@@ -192,7 +206,9 @@ TEST_P(EisenstatPcgTest, RecoversFromASolveThatOverflowed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, EisenstatPcgTest,
-                         testing::Values(Vec3i(1, 1, 1), Vec3i(12, 5, 1), Vec3i(6, 7, 8), Vec3i(100, 60, 1)));
+                         testing::Values(Box{{1, 1, 1}}, Box{{12, 5, 1}}, Box{{6, 7, 8}}, Box{{100, 60, 1}},
+                                         Box{{1, 1, 1}, true}, Box{{12, 5, 1}, true}, Box{{6, 7, 8}, true},
+                                         Box{{40, 30, 9}, true}));
 
 TEST(EisenstatPcg, IsExactOnALine) {
   // A chain of vertices with couplings B = s sᵀ: its factorisation has no fill, so that one iteration solves.
@@ -224,25 +240,30 @@ TEST(EisenstatPcg, IsExactOnALine) {
   EXPECT_LE(system.residual(alpha), 1e-6 * rr);
 }
 
-TEST(SweepKernels, AllHaveTheSameBits) {
-  const Lattice lattice = test::box_lattice({20, 12, 2});
-  const SpringEnergy springs(build_springs(lattice, Bracing::full), 1, {20000, 100, 100});
-  std::vector<Vec3> x = test::rest_positions(lattice);
+class SweepKernels : public testing::TestWithParam<bool> {};
+
+TEST_P(SweepKernels, AllHaveTheSameBits) {
+  const Box box{{20, 12, 2}, GetParam()};
+  const auto kind = box.solid ? sweep_kernels::Couplings::full : sweep_kernels::Couplings::central;
+  std::vector<Vec3> x = test::rest_positions(test::box_lattice(box.extent));
   const std::vector<Vec3> noise = test::random_vectors(x.size(), 0.2, 4);
   for (std::size_t v = 0; v < x.size(); ++v) x[v] += noise[v];
   const std::vector<double> masses(x.size(), 1);
   const std::vector<std::uint8_t> fixed(x.size(), 0);
   Linearization h;
   h.reset(masses, fixed, 1e-4);
-  springs.linearize(x, h, 0);
+  const auto energy = box.energy();
+  energy->linearize(x, h, 0);
   h.finish();
   ASSERT_EQ(h.sets().size(), 1U);
   const SpringHessian& couplings = *h.sets()[0];
+  const FullCouplings* const full = h.full(couplings);
+  ASSERT_EQ(full != nullptr, box.solid);
   const EliminationOrder& pattern = couplings.pattern();
   const std::size_t positions = pattern.position_count();
 
   std::vector<std::vector<float>> results;
-  for (const sweep_kernels::Kernels* kernels : sweep_kernels::all_kernels()) {
+  for (const sweep_kernels::Kernels* kernels : sweep_kernels::all_kernels(kind)) {
     const std::size_t groups = pattern.groups().size();
     std::vector<float> identity(positions, 0), m(6 * positions), flat(3 * positions), vectors(15 * positions),
         units(2 * groups);
@@ -260,8 +281,8 @@ TEST(SweepKernels, AllHaveTheSameBits) {
     sweep.groups = pattern.groups().data();
     sweep.blocks = pattern.blocks().data();
     sweep.links = pattern.links().data();
-    sweep.coefficients = couplings.coefficients();
-    sweep.units = couplings.units();
+    sweep.coefficients = full ? full->coefficients() : couplings.coefficients();
+    sweep.units = full ? full->units() : couplings.units();
     sweep.pivots = {packed.data(), units.data()};
     sweep.excess = {packed.data() + 4 * positions, units.data() + groups};
     sweep.flat = {flat.data(), flat.data() + positions, flat.data() + 2 * positions};
@@ -300,6 +321,8 @@ TEST(SweepKernels, AllHaveTheSameBits) {
   for (const auto& result : results)
     EXPECT_EQ(std::memcmp(result.data(), results[0].data(), result.size() * sizeof(float)), 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(CentralAndFull, SweepKernels, testing::Bool());
 
 }  // namespace
 }  // namespace muslin

@@ -67,8 +67,8 @@ TEST(Linearization, RankOneTermOfNegativeFactorIsLeftOut) {
   EXPECT_FALSE(system.h.has_remainder());
 }
 
-/// A chain whose blocks are those of springs and of something else, with zero rows.
-TEST(Linearization, StandInSpringsDoNotChangeTheSystemButEnterTheFactorisation) {
+/// A chain whose blocks are not those of springs, with rows that sum to zero.
+TEST(Linearization, StandInLeavesTheSystemAsItIsAndMakesItsBlocksCouplings) {
   constexpr int chain = 50;
   std::vector<std::pair<int, int>> pairs;
   for (int v = 0; v + 1 < chain; ++v) pairs.emplace_back(v, v + 1);
@@ -76,7 +76,7 @@ TEST(Linearization, StandInSpringsDoNotChangeTheSystemButEnterTheFactorisation) 
   const auto pattern = std::make_shared<const SymmetricPattern>(pairs, chain);
   SpringNetwork springs;
   springs.vertex_count = chain;
-  springs.runs = {{0, 0, 1, chain - 1}};
+  springs.runs = {{0, 0, 1, chain - 1}, {1, 0, 2, chain - 2}};
   const auto network = std::make_shared<const SpringNetwork>(springs);
   const std::vector<Vec3> x = test::random_vectors(chain, 1, 8), p = test::random_vectors(chain, 1, 9);
   const std::vector<double> masses(chain, 0.1);
@@ -87,17 +87,21 @@ TEST(Linearization, StandInSpringsDoNotChangeTheSystemButEnterTheFactorisation) 
     h.reset(masses, fixed, 1);
     const PairBlocks blocks = h.pair_blocks(pattern, 0);
     for (const auto& [a, b] : pairs) {
+      // What is not symmetric cancels in the diagonal blocks along the chain.
+      const double turn = b == a + 1 ? 0.7 : -0.35;
       for (int c = 0; c < 3; ++c) {
         for (int r = 0; r < 3; ++r) {
-          const float value = static_cast<float>(
-              x[static_cast<std::size_t>(a)][c] * x[static_cast<std::size_t>(a)][r] + (c == r ? 2 : 0));
-          blocks.block(pattern->find(a, b))[c][r] -= value;
+          const Vec3& at = x[static_cast<std::size_t>(a)];
+          const auto value = static_cast<float>(at[c] * at[r] + (c == r ? 2 : 0));
+          blocks.block(pattern->find(a, b))[c][r] -=
+              value + static_cast<float>(c == r ? 0 : turn * (c > r ? 1 : -1));
+          if (with) continue;
           blocks.block(pattern->find(a, a))[c][r] += value;
           blocks.block(pattern->find(b, b))[c][r] += value;
         }
       }
     }
-    const CentralSpring kinds[] = {{1.5F, 0}};
+    const CentralSpring kinds[] = {{1.5F, 0}, {0.5F, 0}};
     if (with) h.stand_in(pattern, network, kinds, x, 0);
     h.finish();
     EXPECT_EQ(h.has_springs(), with);
@@ -105,6 +109,12 @@ TEST(Linearization, StandInSpringsDoNotChangeTheSystemButEnterTheFactorisation) 
     products[with ? 1 : 0] = test::product(h, p);
   }
   for (std::size_t v = 0; v < chain; ++v) EXPECT_LE((products[0][v] - products[1][v]).norm(), 3e-5) << v;
+  h.project();
+  EXPECT_EQ(h.full(*h.sets()[0]), nullptr);
+  for (std::uint32_t seed = 1; seed < 5; ++seed) {
+    const std::vector<Vec3> q = test::random_vectors(chain, 1, seed);
+    EXPECT_GT(test::inner(q, test::product(h, q)), 0);
+  }
 }
 
 }  // namespace

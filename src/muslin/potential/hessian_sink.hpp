@@ -89,9 +89,17 @@ class HessianSink {
   virtual PairBlocks pair_blocks(const std::shared_ptr<const SymmetricPattern>& pattern,
                                  std::size_t first) = 0;
 
-  /// Lets springs stand for the blocks of a pattern in the preconditioner, where no other springs hold the
-  /// same vertices: the system stays the same, and is solved as fast as one of springs if their Hessian, k n
-  /// nᵀ along the directions at x, resembles the blocks. Every row of the blocks must sum to zero.
+  /// Returns the blocks of a pattern like pair_blocks, without setting them to zero. At the first request,
+  /// `fresh`, the potential sets every block except the diagonal ones, which stand_in makes; at later ones it
+  /// adds.
+  virtual PairBlocks pair_blocks_to_set(const std::shared_ptr<const SymmetricPattern>& pattern,
+                                        std::size_t first, bool& fresh) = 0;
+
+  /// Makes the blocks of a pattern couplings between the ends of springs, which the linear solver handles
+  /// like springs. The network has a spring for every pair of the pattern. Every row of the blocks sums to
+  /// zero, so the diagonal ones need not be set. Springs of these `kinds`, k n nᵀ along the directions at x,
+  /// replace the blocks on the coarse grid, and everywhere if the blocks are found to be indefinite; hence
+  /// the blocks may be a true Hessian. Several calls for one pattern add their springs.
   virtual void stand_in(const std::shared_ptr<const SymmetricPattern>& pattern,
                         const std::shared_ptr<const SpringNetwork>& network,
                         std::span<const CentralSpring> kinds, ConstVectors x, std::size_t first) = 0;

@@ -38,15 +38,15 @@ sweep_kernels::Sweep EisenstatPcg::sweep(const Part& part, int task) const {
   sweep.groups = pattern.groups().data();
   sweep.blocks = pattern.blocks().data();
   sweep.links = pattern.links().data();
-  sweep.coefficients = part.couplings->coefficients();
-  sweep.units = part.couplings->units();
+  sweep.coefficients = part.full ? part.full->coefficients() : part.couplings->coefficients();
+  sweep.units = part.full ? part.full->units() : part.couplings->units();
   sweep.pivots = {pivots_.data() + packed_size * part.first_group, pivot_units_.data() + part.first_group};
   sweep.excess = {excess_.data() + packed_size * part.first_group, excess_units_.data() + part.first_group};
   sweep.flat = flat_.data() + static_cast<std::ptrdiff_t>(lanes * part.first_group);
   return sweep;
 }
 
-/// The sum of body(sweep, offset of the part's vectors) over all tasks, phase by phase.
+/// The sum of body(kernels, sweep, offset of the part's vectors) over all tasks, phase by phase.
 template <class Body>
 double EisenstatPcg::forward(const Body& body) const {
   double sum = 0;
@@ -54,7 +54,8 @@ double EisenstatPcg::forward(const Body& body) const {
     const std::vector<int>& phases = part.couplings->pattern().phases();
     for (std::size_t phase = 0; phase + 1 < phases.size(); ++phase) {
       sum += parallel_sum(at(phases[phase + 1] - phases[phase]), 1, 0.0, [&](std::size_t t, std::size_t) {
-        return body(sweep(part, phases[phase] + static_cast<int>(t)), vector_size * part.first_group);
+        return body(part.kernels(), sweep(part, phases[phase] + static_cast<int>(t)),
+                    vector_size * part.first_group);
       });
     }
   }
@@ -68,7 +69,8 @@ double EisenstatPcg::backward(const Body& body) const {
     const std::vector<int>& phases = part.couplings->pattern().phases();
     for (std::size_t phase = phases.size() - 1; phase-- > 0;) {
       sum += parallel_sum(at(phases[phase + 1] - phases[phase]), 1, 0.0, [&](std::size_t t, std::size_t) {
-        return body(sweep(part, phases[phase] + static_cast<int>(t)), vector_size * part.first_group);
+        return body(part.kernels(), sweep(part, phases[phase] + static_cast<int>(t)),
+                    vector_size * part.first_group);
       });
     }
   }
@@ -121,7 +123,7 @@ double EisenstatPcg::factor(Linearization& h) {
   parts_.clear();
   group_count_ = 0;
   for (const SpringHessian* set : h.sets()) {
-    parts_.push_back({set, group_count_});
+    parts_.push_back({set, h.full(*set), group_count_});
     group_count_ += set->pattern().groups().size();
   }
   const std::size_t positions = lanes * group_count_;
@@ -165,11 +167,10 @@ double EisenstatPcg::factor(Linearization& h) {
     const std::vector<int>& phases = part.couplings->pattern().phases();
     for (std::size_t phase = 0; phase + 1 < phases.size(); ++phase) {
       const auto tasks = at(phases[phase + 1] - phases[phase]);
-      stiffest =
-          stiffest + parallel_sum(tasks, 1, Largest{}, [&](std::size_t t, std::size_t) {
-            return Largest{sweep_kernels::kernels().factor(sweep(part, phases[phase] + static_cast<int>(t)),
-                                                           diagonal, m_upper + first, m_lower + first)};
-          });
+      stiffest = stiffest + parallel_sum(tasks, 1, Largest{}, [&](std::size_t t, std::size_t) {
+                   return Largest{part.kernels().factor(sweep(part, phases[phase] + static_cast<int>(t)),
+                                                        diagonal, m_upper + first, m_lower + first)};
+                 });
     }
   }
   return std::sqrt(static_cast<double>(stiffest.value));
@@ -182,41 +183,44 @@ double EisenstatPcg::start(ConstVectors b, double scale) {
   });
   std::memset(p_, 0, 2 * vector_size * group_count_ * sizeof(float));  // and x
   clear(flat_);
-  return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    return sweep_kernels::kernels().solve_forward(sweep, r_ + offset);
-  });
+  return forward([&](const sweep_kernels::Kernels& kernels, const sweep_kernels::Sweep& sweep,
+                     std::size_t offset) { return kernels.solve_forward(sweep, r_ + offset); });
 }
 
 double EisenstatPcg::direction(double alpha, double beta) {
-  const double curvature = backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    return sweep_kernels::kernels().direction(sweep, static_cast<float>(alpha), static_cast<float>(beta),
-                                              r_ + offset, x_ + offset, p_ + offset, c_ + offset);
-  });
+  const double curvature = backward(
+      [&](const sweep_kernels::Kernels& kernels, const sweep_kernels::Sweep& sweep, std::size_t offset) {
+        return kernels.direction(sweep, static_cast<float>(alpha), static_cast<float>(beta), r_ + offset,
+                                 x_ + offset, p_ + offset, c_ + offset);
+      });
   return h_->has_remainder() ? curvature + add_remainder_product() : curvature;
 }
 
 double EisenstatPcg::corrected_direction(double alpha, double beta) {
-  const double curvature = backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    return sweep_kernels::kernels().corrected_direction(
-        sweep, static_cast<float>(alpha), static_cast<float>(beta), r_ + offset, x_ + offset, p_ + offset,
-        c_ + offset, other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
-  });
+  const double curvature = backward(
+      [&](const sweep_kernels::Kernels& kernels, const sweep_kernels::Sweep& sweep, std::size_t offset) {
+        return kernels.corrected_direction(sweep, static_cast<float>(alpha), static_cast<float>(beta),
+                                           r_ + offset, x_ + offset, p_ + offset, c_ + offset,
+                                           other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
+      });
   return h_->has_remainder() ? curvature + add_remainder_product() : curvature;
 }
 
 double EisenstatPcg::residual(double alpha) {
-  return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    return sweep_kernels::kernels().residual(sweep, static_cast<float>(alpha), c_ + offset,
-                                             further_ ? further_ + offset : nullptr, r_ + offset);
-  });
+  return forward(
+      [&](const sweep_kernels::Kernels& kernels, const sweep_kernels::Sweep& sweep, std::size_t offset) {
+        return kernels.residual(sweep, static_cast<float>(alpha), c_ + offset,
+                                further_ ? further_ + offset : nullptr, r_ + offset);
+      });
 }
 
 double EisenstatPcg::residual_and_product(double alpha) {
-  return forward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    return sweep_kernels::kernels().residual_and_product(
-        sweep, static_cast<float>(alpha), c_ + offset, further_ ? further_ + offset : nullptr, r_ + offset,
-        other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
-  });
+  return forward(
+      [&](const sweep_kernels::Kernels& kernels, const sweep_kernels::Sweep& sweep, std::size_t offset) {
+        return kernels.residual_and_product(sweep, static_cast<float>(alpha), c_ + offset,
+                                            further_ ? further_ + offset : nullptr, r_ + offset,
+                                            other_.data() + static_cast<std::ptrdiff_t>(offset / 3));
+      });
 }
 
 void EisenstatPcg::find_product() {
@@ -253,8 +257,8 @@ void EisenstatPcg::solution(double alpha, double scale, Vectors s) { solve_backw
 
 /// s = scale · F⁻ᵀ (x̂ + alpha p).
 void EisenstatPcg::solve_backward(double alpha, const float* p, double scale, Vectors s) {
-  backward([&](const sweep_kernels::Sweep& sweep, std::size_t offset) {
-    sweep_kernels::kernels().solve_backward(sweep, static_cast<float>(alpha), x_ + offset, p + offset);
+  backward([&](const sweep_kernels::Kernels& kernels, const sweep_kernels::Sweep& sweep, std::size_t offset) {
+    kernels.solve_backward(sweep, static_cast<float>(alpha), x_ + offset, p + offset);
     return 0.0;
   });
   const Floats t = flat_.data();

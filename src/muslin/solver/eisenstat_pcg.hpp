@@ -11,7 +11,7 @@
 //
 // costs one sweep backwards (t, u = −Lᵀ t, g = Gᵀ t) and one forwards, hardly more than a product with H
 // (Eisenstat 1981). docs/theory/eisenstat-pcg.md has the derivation. Held vertices have G⁻¹ = 0 and are
-// excluded.
+// excluded. Full couplings, which are not central forces, have D = A (symmetric Gauss-Seidel).
 #pragma once
 
 #include <cstddef>
@@ -61,7 +61,12 @@ class EisenstatPcg {
   /// One set of couplings and its first group among all.
   struct Part {
     const SpringHessian* couplings = nullptr;
+    const FullCouplings* full = nullptr;  ///< replaces them, if not null
     std::size_t first_group = 0;
+    const sweep_kernels::Kernels& kernels() const {
+      return sweep_kernels::kernels(full ? sweep_kernels::Couplings::full
+                                         : sweep_kernels::Couplings::central);
+    }
   };
   sweep_kernels::Sweep sweep(const Part& part, int task) const;
   template <class Body>

@@ -24,7 +24,12 @@ void Linearization::reset(std::span<const double> masses, std::span<const std::u
   sets_.clear();
   matrices_.clear();
   stood_for_.clear();
-  for (const auto& stand_in : stand_ins_) stand_in->used = false;
+  for (const auto& stand_in : stand_ins_) {
+    stand_in->kinds.clear();
+    stand_in->springs = nullptr;
+    stand_in->filled = false;
+    stand_in->in_use = true;
+  }
   generals_.clear();
   rank_ones_.clear();
   relative_count_ = 0;
@@ -76,37 +81,65 @@ void Linearization::stand_in(const std::shared_ptr<const SymmetricPattern>& patt
     const EliminationOrder& order = *arranged(network).pattern;
     for (const EliminationOrder::Block& block : order.blocks()) {
       for (int l = 0; l < EliminationOrder::lanes; ++l) {
-        made.slots.push_back(-1);
+        made.slots.push_back(FullCouplings::none);
         if ((block.used >> l & 1) == 0) continue;
-        const auto position = [&](int base) { return order.vertex(static_cast<std::size_t>(base + l)); };
-        const int a = position(l < block.cut ? block.first : block.second),
-                  b = position(EliminationOrder::lanes * block.group);
-        made.slots.back() = pattern->find(std::min(a, b), std::max(a, b));
+        const auto vertex = [&](int base) { return order.vertex(static_cast<std::size_t>(base + l)); };
+        const int earlier = vertex(l < block.cut ? block.first : block.second),
+                  later = vertex(EliminationOrder::lanes * block.group);
+        made.slots.back() = later < earlier ? pattern->find(later, earlier) : ~pattern->find(earlier, later);
       }
     }
     stand_ins_.push_back(std::make_unique<StandIn>(std::move(made)));
     known = stand_ins_.end() - 1;
   }
-  (*known)->kinds.assign(kinds.begin(), kinds.end());
-  (*known)->x = x;
-  (*known)->used = true;
+  StandIn& stand_in = **known;
+  if (stand_in.kinds.empty()) {
+    stand_in.kinds.assign(kinds.begin(), kinds.end());
+    stand_in.x = x;
+    return;
+  }
+  for (std::size_t k = 0; k < kinds.size(); ++k) stand_in.kinds[k].stiffness += kinds[k].stiffness;
 }
 
 void Linearization::put_stand_ins() {
-  std::erase_if(stand_ins_, [](const auto& stand_in) { return !stand_in->used; });
+  std::erase_if(stand_ins_, [](const auto& stand_in) { return stand_in->kinds.empty(); });
   for (const auto& stand_in : stand_ins_) {
+    SymmetricMatrix& of_pattern = matrix(stand_in->pattern, stand_in->first);
     const std::size_t end = stand_in->first + stand_in->pattern->vertex_count();
     const bool occupied = std::any_of(sets_.begin(), sets_.end(), [&](const SpringHessian* set) {
       return set->first() < end &&
              stand_in->first < set->first() + static_cast<std::size_t>(set->pattern().vertex_count());
     });
-    if (occupied) continue;
-    add_dashpots(stand_in->network, stand_in->kinds, stand_in->x, stand_in->first);
-    SymmetricMatrix& of_pattern = matrix(stand_in->pattern, stand_in->first);
-    of_pattern.subtract(couplings(arranged(stand_in->network).pattern, stand_in->first), stand_in->slots);
+    if (occupied) {
+      of_pattern.close_rows();
+      continue;
+    }
+    stand_in->springs = &couplings(arranged(stand_in->network).pattern, stand_in->first);
+    stand_in->full.set(of_pattern, stand_in->slots);
     std::erase(matrices_, &of_pattern);
     stood_for_.push_back(&of_pattern);
   }
+}
+
+void Linearization::fill_stand_ins() {
+  for (const auto& stand_in : stand_ins_) {
+    if (!stand_in->springs || stand_in->filled) continue;
+    stand_in->filled = true;
+    const Arranged& a = arranged(stand_in->network);
+    Buffer<float> room;  // the solver may be using the workspace
+    room.resize(2 * 3 * a.pattern->position_count());
+    add_dashpot_hessian({stand_in->kinds,
+                         a.weights.empty() ? nullptr : a.weights.data(),
+                         stand_in->x,
+                         {room.data(), room.size()}},
+                        *stand_in->springs);
+  }
+}
+
+const FullCouplings* Linearization::full(const SpringHessian& set) const {
+  for (const auto& stand_in : stand_ins_)
+    if (stand_in->springs == &set && stand_in->in_use) return &stand_in->full;
+  return nullptr;
 }
 
 SpringHessian& Linearization::couplings(const std::shared_ptr<const EliminationOrder>& pattern,
@@ -124,15 +157,23 @@ SpringHessian& Linearization::couplings(const std::shared_ptr<const EliminationO
   return *storage_.back();
 }
 
+PairBlocks Linearization::pair_blocks_to_set(const std::shared_ptr<const SymmetricPattern>& pattern,
+                                             std::size_t first, bool& fresh) {
+  const std::size_t known = matrices_.size();
+  const PairBlocks blocks = matrix(pattern, first, false).blocks();
+  fresh = matrices_.size() > known;
+  return blocks;
+}
+
 SymmetricMatrix& Linearization::matrix(const std::shared_ptr<const SymmetricPattern>& pattern,
-                                       std::size_t first) {
+                                       std::size_t first, bool zero) {
   const auto stored = std::find_if(matrix_storage_.begin(), matrix_storage_.end(),
                                    [&](const auto& m) { return m->is_of(pattern) && m->first() == first; });
   const bool is_new = stored == matrix_storage_.end();
   if (is_new) matrix_storage_.push_back(std::make_unique<SymmetricMatrix>());
   SymmetricMatrix& matrix = is_new ? *matrix_storage_.back() : **stored;
   if (std::find(matrices_.begin(), matrices_.end(), &matrix) == matrices_.end()) {
-    matrix.reset(pattern, first);
+    matrix.reset(pattern, first, zero);
     matrices_.push_back(&matrix);
   }
   return matrix;
@@ -265,14 +306,14 @@ bool Linearization::has_springs() const {
 }
 
 void Linearization::project() {
+  fill_stand_ins();
+  for (const auto& stand_in : stand_ins_) stand_in->in_use = false;
   for (const auto& set : storage_) set->project();
 }
 
 double Linearization::add_remainder_product(const Float4* p, Float4* y) {
   double sum = 0;
   for (const SymmetricMatrix* matrix : matrices_)
-    sum += matrix->add_product(p + matrix->first(), y + matrix->first());
-  for (const SymmetricMatrix* matrix : stood_for_)
     sum += matrix->add_product(p + matrix->first(), y + matrix->first());
   for (std::size_t i = 0; i < relative_count_; ++i)
     sum += relatives_[i]->add_product(p + relatives_[i]->first(), y + relatives_[i]->first());
@@ -322,6 +363,7 @@ std::size_t Linearization::bytes() const {
                       (p_.capacity() + y_.capacity()) * sizeof(Vec3) + blocks_.capacity() * sizeof(Mat3);
   for (const auto& set : storage_) bytes += set->bytes();
   for (const auto& matrix : matrix_storage_) bytes += matrix->bytes();
+  for (const auto& stand_in : stand_ins_) bytes += stand_in->full.bytes();
   for (const auto& relative : relatives_) bytes += relative->bytes();
   for (const auto& forms : forms_) bytes += forms->bytes();
   return bytes;

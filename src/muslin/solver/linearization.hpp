@@ -20,6 +20,7 @@
 #include "muslin/potential/hessian_sink.hpp"
 #include "muslin/potential/spring_network.hpp"
 #include "muslin/solver/coupled_forms.hpp"
+#include "muslin/solver/full_couplings.hpp"
 #include "muslin/solver/relative_stiffness.hpp"
 #include "muslin/solver/spring_hessian.hpp"
 #include "muslin/solver/symmetric_matrix.hpp"
@@ -43,6 +44,8 @@ class Linearization : public HessianSink {
   PairBlocks pair_blocks(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first) override {
     return matrix(pattern, first).blocks();
   }
+  PairBlocks pair_blocks_to_set(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first,
+                                bool& fresh) override;
   void stand_in(const std::shared_ptr<const SymmetricPattern>& pattern,
                 const std::shared_ptr<const SpringNetwork>& network, std::span<const CentralSpring> kinds,
                 ConstVectors x, std::size_t first) override;
@@ -59,13 +62,16 @@ class Linearization : public HessianSink {
   /// Returns the couplings of this pattern on vertices first, first + 1, …; zero at the first request. A
   /// vertex has couplings of one pattern only.
   SpringHessian& couplings(const std::shared_ptr<const EliminationOrder>& pattern, std::size_t first);
-  /// Returns the matrix of this pattern on vertices first, first + 1, …; zero at the first request.
-  SymmetricMatrix& matrix(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first);
+  /// Returns the matrix of this pattern on vertices first, first + 1, …; at the first request zero, or
+  /// undefined if it need not be.
+  SymmetricMatrix& matrix(const std::shared_ptr<const SymmetricPattern>& pattern, std::size_t first,
+                          bool zero = true);
 
   /// Call when all potentials have been added.
   void finish();
 
-  /// Leaves out the negative eigenvalues of the couplings.
+  /// Leaves out the negative eigenvalues of the couplings; springs replace the full couplings for which they
+  /// stand in.
   void project();
 
   /// Returns scratch memory for the solver, valid until the next call or until a potential is added.
@@ -76,6 +82,10 @@ class Linearization : public HessianSink {
 
   /// Returns the couplings of all vertices in ascending order, empty ones for vertices without any.
   std::span<const SpringHessian* const> sets() const { return sets_; }
+  /// Computes the springs that stand in for full couplings; sets() contains them only from then on.
+  void fill_stand_ins();
+  /// Returns the full couplings for which the springs of a set stand in, null if there are none.
+  const FullCouplings* full(const SpringHessian& set) const;
   /// Returns the block matrices except those for which springs stand in.
   std::span<const SymmetricMatrix* const> matrices() const { return matrices_; }
   bool has_springs() const;
@@ -83,12 +93,12 @@ class Linearization : public HessianSink {
 
   /// True if K is not zero.
   bool has_remainder() const {
-    return !matrices_.empty() || !stood_for_.empty() || !generals_.empty() || relative_count_ > 0 ||
-           forms_count_ > 0 || !rank_ones_.empty();
+    return !matrices_.empty() || !generals_.empty() || relative_count_ > 0 || forms_count_ > 0 ||
+           !rank_ones_.empty();
   }
-  /// Diagonal blocks of K without the coupled forms and the matrices for which springs stand in, with the
-  /// identity positive definite: xx, xy, xz of `upper` and yy, yz, zz of `lower`, #V by 3. Relative
-  /// stiffnesses are scaled down where masses would be lost to rounding.
+  /// Diagonal blocks of K without the coupled forms, with the identity positive definite: xx, xy, xz of
+  /// `upper` and yy, yz, zz of `lower`, #V by 3. Relative stiffnesses are scaled down where masses would be
+  /// lost to rounding.
   const FloatVectors& remainder_upper() const { return upper_; }
   const FloatVectors& remainder_lower() const { return lower_; }
   /// Returns the largest ratio of the trace of a relative stiffness's diagonal block to the vertex's entry of
@@ -119,11 +129,14 @@ class Linearization : public HessianSink {
   struct StandIn {
     std::shared_ptr<const SymmetricPattern> pattern;
     std::shared_ptr<const SpringNetwork> network;
-    std::vector<int> slots;  // by coupling: its block in the pattern, −1 for none
-    std::vector<CentralSpring> kinds;
+    std::vector<int> slots;            // as of FullCouplings::set
+    std::vector<CentralSpring> kinds;  // at this x; empty if not used
     ConstVectors x;
     std::size_t first = 0;
-    bool used = false;  // at this x
+    FullCouplings full;
+    SpringHessian* springs = nullptr;  // replaced by `full` while that is in use
+    bool filled = false;               // `springs` are computed
+    bool in_use = true;                // `full` is
   };
   void put_stand_ins();
   const Arranged& arranged(const std::shared_ptr<const SpringNetwork>& network);
@@ -138,7 +151,7 @@ class Linearization : public HessianSink {
   std::vector<const SpringHessian*> sets_;               // of this x
   std::vector<std::unique_ptr<SymmetricMatrix>> matrix_storage_;
   std::vector<const SymmetricMatrix*> matrices_;
-  std::vector<const SymmetricMatrix*> stood_for_;    // of this x, less the couplings that stand for them
+  std::vector<const SymmetricMatrix*> stood_for_;    // of this x
   std::vector<std::unique_ptr<StandIn>> stand_ins_;  // reused from step to step
   std::vector<General> generals_;
   std::vector<RankOne> rank_ones_;

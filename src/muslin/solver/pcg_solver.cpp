@@ -56,7 +56,10 @@ bool PcgSolver::prepare_coarse_space() {
     assembled_ = false;
   }
   if (coarse_space_->empty()) return false;
-  if (!assembled_) coarse_space_->assemble(h_);
+  if (!assembled_) {
+    h_.fill_stand_ins();
+    coarse_space_->assemble(h_);
+  }
   assembled_ = true;
   return true;
 }

@@ -36,21 +36,25 @@ namespace avx512 {
 #pragma GCC pop_options
 #endif
 
-std::span<const Kernels* const> all_kernels() {
-  static const std::vector<const Kernels*> all = [] {
-    std::vector<const Kernels*> some = {&plain::table};
+std::span<const Kernels* const> all_kernels(Couplings kind) {
+  static const std::array<std::vector<const Kernels*>, 2> all = [] {
+    std::array<std::vector<const Kernels*>, 2> some;
+    for (std::size_t k = 0; k < 2; ++k) {
+      some[k] = {&plain::table[k]};
 #ifdef MUSLIN_BY_PROCESSOR
-    if (__builtin_cpu_supports("x86-64-v3")) some.push_back(&avx2::table);
-    if (__builtin_cpu_supports("x86-64-v4")) some.push_back(&avx512::table);
+      if (__builtin_cpu_supports("x86-64-v3")) some[k].push_back(&avx2::table[k]);
+      if (__builtin_cpu_supports("x86-64-v4")) some[k].push_back(&avx512::table[k]);
 #endif
+    }
     return some;
   }();
-  return all;
+  return all[static_cast<std::size_t>(kind)];
 }
 
-const Kernels& kernels() {
-  static const Kernels& best = *all_kernels().back();
-  return best;
+const Kernels& kernels(Couplings kind) {
+  static const std::array<const Kernels*, 2> best = {all_kernels(Couplings::central).back(),
+                                                     all_kernels(Couplings::full).back()};
+  return *best[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace muslin::sweep_kernels

@@ -7,6 +7,7 @@
 
 #include "muslin/solver/elimination_order.hpp"
 #include "muslin/solver/float_vectors.hpp"
+#include "muslin/solver/full_couplings.hpp"
 
 namespace muslin::sweep_kernels {
 
@@ -20,6 +21,9 @@ struct PackedMatrices {
   std::uint32_t* words = nullptr;
   float* units = nullptr;
 };
+
+/// Couplings as SpringHessian or as FullCouplings stores them.
+enum class Couplings : std::uint8_t { central, full };
 
 /// Groups group_begin … group_end − 1 of a pattern. Vectors by group, `flat` by position.
 struct Sweep {
@@ -42,8 +46,8 @@ struct Diagonal {
 
 struct Kernels {
   /// Computes M and A − D of each group, in ascending order; `upper` (m00, m10, m20) and `lower` (m11, m21,
-  /// m22), by position, receive M for the later groups. Returns the largest ‖A‖² / identity² of a free
-  /// vertex.
+  /// m22), by position, receive M for the later groups, if couplings are central. Returns the largest
+  /// ‖A‖² / identity² of a free vertex.
   float (*factor)(const Sweep& sweep, const Diagonal& diagonal, Floats upper, Floats lower);
   /// r = F⁻¹ r; returns rᵀr.
   double (*solve_forward)(const Sweep& sweep, float* r);
@@ -64,8 +68,8 @@ struct Kernels {
 };
 
 /// Returns the best kernels for this processor.
-const Kernels& kernels();
+const Kernels& kernels(Couplings kind);
 /// Returns all kernels that this processor can run, the most basic first: tests compare their bits.
-std::span<const Kernels* const> all_kernels();
+std::span<const Kernels* const> all_kernels(Couplings kind);
 
 }  // namespace muslin::sweep_kernels

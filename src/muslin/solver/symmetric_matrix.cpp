@@ -60,33 +60,18 @@ MUSLIN_VECTOR_CODE double add_rows(const SymmetricPattern& pattern, const Float4
 
 }  // namespace
 
-void SymmetricMatrix::reset(std::shared_ptr<const SymmetricPattern> pattern, std::size_t first) {
+void SymmetricMatrix::reset(std::shared_ptr<const SymmetricPattern> pattern, std::size_t first, bool zero) {
   pattern_ = std::move(pattern);
   first_ = first;
   columns_.resize(3 * pattern_->block_count());
+  if (!zero) return;
   constexpr std::size_t columns_per_piece = 1 << 16;
   parallel_for(columns_.size(), columns_per_piece, [&](std::size_t begin, std::size_t end) {
     std::fill(columns_.data() + begin, columns_.data() + end, Float4{0, 0, 0, 0});
   });
 }
 
-void SymmetricMatrix::subtract(const SpringHessian& couplings, std::span<const int> slots) {
-  constexpr int lanes = SpringHessian::lanes;
-  parallel_for(couplings.pattern().block_count(), row_grain, [&](std::size_t begin, std::size_t end) {
-    float sx[lanes], sy[lanes], sz[lanes], t[lanes];
-    for (std::size_t b = begin; b < end; ++b) {
-      couplings.load(b, 1, sx, sy, sz, t);
-      for (int l = 0; l < lanes; ++l) {
-        const int slot = slots[lanes * b + static_cast<std::size_t>(l)];
-        if (slot < 0) continue;
-        const Float4 s = {sx[l], sy[l], sz[l], 0};
-        Float4* const columns = block(slot);
-        columns[0] += s * sx[l] + Float4{t[l], 0, 0, 0};
-        columns[1] += s * sy[l] + Float4{0, t[l], 0, 0};
-        columns[2] += s * sz[l] + Float4{0, 0, t[l], 0};
-      }
-    }
-  });
+void SymmetricMatrix::close_rows() {
   parallel_for(pattern_->vertex_count(), row_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       Float4 sum[3] = {};

@@ -6,20 +6,18 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
 
 #include "muslin/core/buffer.hpp"
 #include "muslin/potential/hessian_sink.hpp"
 #include "muslin/potential/symmetric_pattern.hpp"
 #include "muslin/solver/float_vectors.hpp"
-#include "muslin/solver/spring_hessian.hpp"
 
 namespace muslin {
 
 class SymmetricMatrix {
  public:
-  /// Resets to a zero matrix of this pattern for vertices first, first + 1, ….
-  void reset(std::shared_ptr<const SymmetricPattern> pattern, std::size_t first);
+  /// Resets to a matrix of this pattern for vertices first, first + 1, …: zero, or else undefined.
+  void reset(std::shared_ptr<const SymmetricPattern> pattern, std::size_t first, bool zero = true);
 
   bool is_of(const std::shared_ptr<const SymmetricPattern>& pattern) const { return pattern_ == pattern; }
   const SymmetricPattern& pattern() const { return *pattern_; }
@@ -31,10 +29,8 @@ class SymmetricMatrix {
 
   PairBlocks blocks() { return {columns_.data()}; }
 
-  /// Subtracts couplings, each of which adds a block B on the diagonal and −B between two vertices;
-  /// afterwards every row sums to zero. `slots`: the block of each coupling, 16 for each block of couplings,
-  /// −1 for none.
-  void subtract(const SpringHessian& couplings, std::span<const int> slots);
+  /// Sets the diagonal blocks so that every row sums to zero.
+  void close_rows();
 
   /// y += A p on the body's vertices, three floats and a zero per vertex; p and y begin at the body's first
   /// vertex. Returns pᵀA p.
