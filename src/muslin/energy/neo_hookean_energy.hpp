@@ -7,6 +7,7 @@
 namespace muslin {
 
 extern template class Elements<TetrahedronStencil, NeoHookeanLaw>;
+extern template class SolidRows<NeoHookeanLaw>;
 
 using NeoHookeanEnergy = SolidEnergy<NeoHookeanLaw>;
 

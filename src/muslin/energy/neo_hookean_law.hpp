@@ -36,16 +36,32 @@ struct NeoHookeanLaw {
     return {4.0 / 3 * shear, lame + 5.0 / 6 * shear};
   }
 
+  /// ψ = polynomial + log_factor ln argument (solid_rows.hpp).
+  MUSLIN_INLINE static double polynomial(const Constants& c, double ic, double j) {
+    return 0.5 * c.mu * (ic - 3) + (j - 1) * (0.5 * c.lambda * (j - 1) - 0.75 * c.mu);
+  }
+  MUSLIN_INLINE static double log_factor(const Constants& c) { return -0.5 * c.mu; }
+  MUSLIN_INLINE static double argument(double ic) { return 0.25 * (ic + 1); }
+
   MUSLIN_INLINE static double energy(const Constants& c, double ic, double j) {
-    return 0.5 * c.mu * (ic - 3 - std::log(0.25 * (ic + 1))) +
-           (j - 1) * (0.5 * c.lambda * (j - 1) - 0.75 * c.mu);
+    return polynomial(c, ic, j) + log_factor(c) * std::log(argument(ic));
   }
-  MUSLIN_INLINE static double shear(const Constants& c, double ic) { return c.mu * ic / (ic + 1); }
-  MUSLIN_INLINE static double growth(const Constants& c, double ic) {
-    return 2 * c.mu / ((ic + 1) * (ic + 1));
+  template <class Real>
+  MUSLIN_INLINE static Real shear(const Constants& c, Real ic) {
+    return static_cast<Real>(c.mu) * ic / (ic + 1);
   }
-  MUSLIN_INLINE static double slope(const Constants& c, double j) { return c.lambda * (j - 1) - 0.75 * c.mu; }
-  MUSLIN_INLINE static double curvature(const Constants& c, double) { return c.lambda; }
+  template <class Real>
+  MUSLIN_INLINE static Real growth(const Constants& c, Real ic) {
+    return static_cast<Real>(2 * c.mu) / ((ic + 1) * (ic + 1));
+  }
+  template <class Real>
+  MUSLIN_INLINE static Real slope(const Constants& c, Real j) {
+    return static_cast<Real>(c.lambda) * (j - 1) - static_cast<Real>(0.75 * c.mu);
+  }
+  template <class Real>
+  MUSLIN_INLINE static Real curvature(const Constants& c, Real) {
+    return static_cast<Real>(c.lambda);
+  }
 };
 
 }  // namespace muslin

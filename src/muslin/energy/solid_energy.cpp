@@ -83,11 +83,11 @@ SolidSprings::SolidSprings(const Lattice& lattice, double youngs_modulus) {
     stiffness_.push_back(lattice.width * by_kind[static_cast<std::size_t>(direction.kind)]);
 }
 
-void SolidSprings::linearize(ConstVectors x, const std::shared_ptr<const SymmetricPattern>& pattern,
-                             HessianSink& into, std::size_t first) const {
+void SolidSprings::stand_in(ConstVectors x, const std::shared_ptr<const SymmetricPattern>& pattern,
+                            double factor, HessianSink& into, std::size_t first) const {
   std::vector<CentralSpring> kinds;
   kinds.reserve(stiffness_.size());
-  for (const double k : stiffness_) kinds.push_back({static_cast<float>(into.scale() * k), 0});
+  for (const double k : stiffness_) kinds.push_back({static_cast<float>(into.scale() * factor * k), 0});
   into.stand_in(pattern, network_, kinds, x, first);
 }
 

@@ -5,11 +5,13 @@
 //
 // f the share of the voxel that the solid fills. The tetrahedra are Kuhn's (lattice/springs.hpp): their edges
 // are the seven directions of the springs, so the stiffness has blocks between the same vertices, and springs
-// of the same Young's modulus stand in for it in the preconditioner. Linear tetrahedra are too stiff in
-// bending for coarse lattices and for Poisson's ratios near ½; docs/theory/solids.md has the errors.
+// of the same Young's modulus stand in for it where the linear solver needs springs. The linear solver gets
+// the exact stiffness. SolidRows computes all that a step needs; the remaining stiffness is computed
+// tetrahedron by tetrahedron. Linear tetrahedra are too stiff in bending for coarse lattices and for
+// Poisson's ratios near ½; docs/theory/solids.md has the errors.
 //
 // solid_laws.hpp lists the laws. A law is instantiated in one source file, which includes
-// elements_methods.hpp.
+// elements_methods.hpp and solid_rows_methods.hpp.
 #pragma once
 
 #include <memory>
@@ -18,6 +20,7 @@
 #include <vector>
 
 #include "muslin/energy/elements.hpp"
+#include "muslin/energy/solid_rows.hpp"
 #include "muslin/energy/tetrahedron_stencil.hpp"
 #include "muslin/lattice/lattice.hpp"
 #include "muslin/potential/spring_network.hpp"
@@ -42,12 +45,12 @@ struct SolidElements {
   TetrahedronStencil stencil;
 };
 
-/// Springs that stand in for a solid in the preconditioner.
+/// Springs that stand in for a solid in the linear solver.
 class SolidSprings {
  public:
   SolidSprings(const Lattice& lattice, double youngs_modulus);
-  void linearize(ConstVectors x, const std::shared_ptr<const SymmetricPattern>& pattern, HessianSink& into,
-                 std::size_t first) const;
+  void stand_in(ConstVectors x, const std::shared_ptr<const SymmetricPattern>& pattern, double factor,
+                HessianSink& into, std::size_t first) const;
 
  private:
   std::shared_ptr<const SpringNetwork> network_;
@@ -65,23 +68,44 @@ class SolidEnergy : public Elements<TetrahedronStencil, Law> {
               std::shared_ptr<const SymmetricPattern> pattern = nullptr)
       : SolidEnergy(SolidElements(lattice), lattice, moduli, std::move(pattern)) {}
 
+  double value(ConstVectors x) const override { return rows_.value(x); }
+  void add_gradient(ConstVectors x, Vectors g) const override { rows_.add_gradient_and_value(x, g); }
+  double add_gradient_and_value(ConstVectors x, Vectors g) const override {
+    return rows_.add_gradient_and_value(x, g);
+  }
+  void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override {
+    if (kind == Stiffness::exact || kind == Stiffness::material)
+      return rows_.add_stiffness_product(kind, x, p, y);
+    Base::add_stiffness_product(kind, x, p, y);
+  }
   void linearize(ConstVectors x, HessianSink& into, std::size_t first) const override {
-    Base::linearize(x, into, first);
-    if (springs_) springs_->linearize(x, this->pattern(), into, first);
+    if (!this->pattern()) return Base::linearize(x, into, first);
+    linearize_stiffness(Stiffness::exact, x, 1, into, first);
+  }
+  /// `kind` is exact or material.
+  void linearize_stiffness(Stiffness kind, ConstVectors x, double factor, HessianSink& into,
+                           std::size_t first) const override {
+    bool fresh = false;
+    const PairBlocks to = into.pair_blocks_to_set(this->pattern(), first, fresh);
+    rows_.add_pair_blocks(kind, x, into.scale() * factor, fresh, to);
+    springs_->stand_in(x, this->pattern(), factor, into, first);
   }
 
  private:
   SolidEnergy(const SolidElements& elements, const Lattice& lattice, const SolidModuli& moduli,
               std::shared_ptr<const SymmetricPattern> pattern)
-      : Base(elements.slabs, elements.stencil, constants(*elements.slabs, moduli), std::move(pattern)) {
+      : Base(elements.slabs, elements.stencil,
+             LawConstants<Law>(*elements.slabs, [c = constants(moduli)](std::size_t) { return c; }),
+             std::move(pattern)),
+        rows_(lattice, constants(moduli), this->pattern().get()) {
     if (this->pattern()) springs_ = std::make_shared<const SolidSprings>(lattice, moduli.youngs_modulus);
   }
-  static LawConstants<Law> constants(const ElementSlabs<4>& slabs, const SolidModuli& moduli) {
+  static typename Law::Constants constants(const SolidModuli& moduli) {
     require_moduli(moduli, Law::parameters);
-    const auto same = Law::constants(moduli.youngs_modulus, moduli.poisson);
-    return LawConstants<Law>(slabs, [same](std::size_t) { return same; });
+    return Law::constants(moduli.youngs_modulus, moduli.poisson);
   }
 
+  SolidRows<Law> rows_;
   std::shared_ptr<const SolidSprings> springs_;
 };
 

@@ -3,8 +3,8 @@
 //
 //   ψ = a(I_C) + f(J)   [J/m³].
 //
-// Laws give `energy` ψ, `shear` 2 a', `growth` 4 a'' ≥ 0, `slope` f' and `curvature` f''. With g = ∂J/∂F, the
-// cofactors,
+// Laws give `energy` ψ in double, and `shear` 2 a', `growth` 4 a'' ≥ 0, `slope` f' and `curvature` f'' in the
+// type of the measure, double or float. With g = ∂J/∂F, the cofactors,
 //
 //   P = 2 a' F + f' g,   dP = 2 a' dF + 4 a'' (F : dF) F + f'' (g : dF) g + f' dg.
 //
