@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "muslin/core/progress_part.hpp"
 #include "muslin/picture/run_pictures.hpp"
-#include "muslin/report/progress_part.hpp"
 
 namespace muslin {
 namespace {

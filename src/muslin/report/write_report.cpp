@@ -1,7 +1,7 @@
 #include "muslin/report/write_report.hpp"
 
 #include "muslin/core/output_file.hpp"
-#include "muslin/report/progress_part.hpp"
+#include "muslin/core/progress_part.hpp"
 #include "muslin/report/report_page.hpp"
 #include "muslin/report/report_pictures.hpp"
 

@@ -1,13 +1,12 @@
-#include <algorithm>
 #include <array>
 #include <memory>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/component/solid.hpp"
+#include "muslin/core/progress_part.hpp"
 #include "muslin/energy/element_energy.hpp"
 #include "muslin/energy/solid_laws.hpp"
 #include "muslin/energy/spring_damping.hpp"
@@ -22,17 +21,6 @@ namespace {
 
 // Above this the run is long and takes several GiB; the user is warned.
 constexpr std::size_t many_voxels = 2'000'000;
-
-Progress part_of(const Progress& whole, double begin, double end) {
-  Progress part;
-  part.cancelled = whole.cancelled;
-  if (whole.report) {
-    part.report = [&whole, begin, end](double fraction, std::string_view stage) {
-      whole.report(begin + fraction * (end - begin), stage);
-    };
-  }
-  return part;
-}
 
 class LatticeBuilder {
  public:
@@ -83,7 +71,7 @@ class LatticeBuilder {
     progress.at(0.1, "distance field");
     const SignedDistance distance(body_.solid);
     progress.at(0.2, "voxels");
-    body_.lattice = build_lattice(body_.solid, distance, own_.lattice, part_of(progress, 0.2, 0.7));
+    body_.lattice = build_lattice(body_.solid, distance, own_.lattice, progress_part(progress, 0.2, 0.7));
     progress.at(0.7, "springs");
     const std::vector<double> fill = body_.lattice.fill;
     body_.lattice.fill = body_.voxel_shares();
