@@ -9,6 +9,7 @@
 
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/contact/turning_plane.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
@@ -134,7 +135,6 @@ class Patch {
     double thickness = std::numeric_limits<double>::infinity(), range = thickness;
   };
 
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   static bool is_again(const Vec3i& three, int i) {
     return (i > 0 && three[i] == three[0]) || (i == 2 && three[2] == three[1]);
   }

@@ -13,13 +13,12 @@
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/intersections.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/index.hpp"
 
 namespace muslin {
 namespace {
 
 constexpr std::size_t listed = 8;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// One triangle of each point and edge, −1: none.
 struct Owners {
@@ -29,24 +28,24 @@ struct Owners {
       : of_point(surface.point_count(), -1), of_edge(surface.edges().size(), -1) {
     for (std::size_t t = surface.triangles().size(); t-- > 0;) {
       for (int i = 0; i < 3; ++i) {
-        of_point[index(surface.triangles()[t][i])] = static_cast<int>(t);
+        of_point[at(surface.triangles()[t][i])] = static_cast<int>(t);
         const int e = surface.triangle_edges()[t][i];
-        if (e >= 0) of_edge[index(e)] = static_cast<int>(t);
+        if (e >= 0) of_edge[at(e)] = static_cast<int>(t);
       }
     }
   }
 };
 
 std::string body_name(const ContactModel& model, int body) {
-  if (index(body) < model.names.size()) return '"' + model.names[index(body)] + '"';
+  if (at(body) < model.names.size()) return '"' + model.names[at(body)] + '"';
   return "surface " + std::to_string(body);
 }
 
 std::string feature_name(const ContactModel& model, int triangle, int body) {
   if (triangle < 0) return body_name(model, body);
-  if (!model.faces.empty() && model.faces[index(triangle)] < 0) return body_name(model, body);
+  if (!model.faces.empty() && model.faces[at(triangle)] < 0) return body_name(model, body);
   if (!model.faces.empty())
-    return fmt::format("face {} of {}", model.faces[index(triangle)], body_name(model, body));
+    return fmt::format("face {} of {}", model.faces[at(triangle)], body_name(model, body));
   const std::span<const Vec3i> triangles = model.surface->triangles();
   const auto first = std::find_if(triangles.begin(), triangles.end(),
                                   [&](const Vec3i& t) { return model.surface->body_of(t[0]) == body; });
@@ -59,7 +58,7 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
   const ContactSurface& surface = *model.surface;
   std::vector<Vec3> x(surface.point_count());
   model.map->apply(q, x);
-  const auto body_of = [&](int triangle) { return surface.body_of(surface.triangles()[index(triangle)][0]); };
+  const auto body_of = [&](int triangle) { return surface.body_of(surface.triangles()[at(triangle)][0]); };
 
   std::vector<Crossing> all;
   IntersectionOptions options;
@@ -73,29 +72,29 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
   const Owners owners(surface);
   std::vector<Crossing> close;
   for (const ContactPair& pair : candidates.pairs()) {
-    const PairGeometry at = pair_geometry(surface, pair, x);
-    if (at.distance > pair.thickness) continue;
+    const PairGeometry geometry = pair_geometry(surface, pair, x);
+    if (geometry.distance > pair.thickness) continue;
     Crossing c;
-    const auto last = index(pair.point_count() - 1);
+    const auto last = at(pair.point_count() - 1);
     c.first_body = surface.body_of(pair.points[0]);
     c.second_body = surface.body_of(pair.points[last]);
     c.kind = Crossing::Kind::too_close;
     if (pair.kind == PairKind::vertex_triangle) {
-      c.first_triangle = owners.of_point[index(pair.first)];
+      c.first_triangle = owners.of_point[at(pair.first)];
       c.second_triangle = pair.second;
     } else if (pair.kind == PairKind::edge_edge) {
-      c.first_triangle = owners.of_edge[index(pair.first)];
-      c.second_triangle = owners.of_edge[index(pair.second)];
+      c.first_triangle = owners.of_edge[at(pair.first)];
+      c.second_triangle = owners.of_edge[at(pair.second)];
     } else {
-      if (at.distance < 0) c.kind = Crossing::Kind::beneath;
-      c.first_triangle = owners.of_point[index(pair.first)];
+      if (geometry.distance < 0) c.kind = Crossing::Kind::beneath;
+      c.first_triangle = owners.of_point[at(pair.first)];
     }
     // A point on the surface of the thinner body, since the centre of a ball is not visible.
-    const std::size_t size = index(first_feature_size(pair.kind)), count = index(pair.point_count());
+    const std::size_t size = at(first_feature_size(pair.kind)), count = at(pair.point_count());
     const bool second_is_thinner = pair.kind != PairKind::point_plane &&
                                    surface.radius_of(pair.points[last]) < surface.radius_of(pair.points[0]);
     for (std::size_t i = second_is_thinner ? size : 0; i < (second_is_thinner ? count : size); ++i)
-      c.at += std::abs(at.weights[i]) * x[index(pair.points[i])];
+      c.at += std::abs(geometry.weights[i]) * x[at(pair.points[i])];
     if (pair.kind != PairKind::point_plane && c.first_triangle > c.second_triangle) {
       std::swap(c.first_triangle, c.second_triangle);
       std::swap(c.first_body, c.second_body);
@@ -122,7 +121,7 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
 std::vector<Crossing> one_of_each_pair(const ContactModel& model, std::span<const Crossing> found) {
   using Feature = std::pair<int, int>;  // a body and a face
   const auto feature = [&](int body, int triangle) {
-    return Feature(body, triangle < 0 || model.faces.empty() ? triangle : model.faces[index(triangle)]);
+    return Feature(body, triangle < 0 || model.faces.empty() ? triangle : model.faces[at(triangle)]);
   };
   std::set<std::pair<Feature, Feature>> seen;
   std::vector<Crossing> result;
@@ -136,10 +135,11 @@ std::vector<Crossing> one_of_each_pair(const ContactModel& model, std::span<cons
 std::string describe(const ContactModel& model, const Crossing& c) {
   const std::string first = feature_name(model, c.first_triangle, c.first_body),
                     second = feature_name(model, c.second_triangle, c.second_body),
-                    at = fmt::format("near ({:.4g}, {:.4g}, {:.4g}) m", c.at.x(), c.at.y(), c.at.z());
-  if (c.kind == Crossing::Kind::crossing) return fmt::format("{} crosses {} {}", first, second, at);
-  if (c.kind == Crossing::Kind::beneath) return fmt::format("{} lies beneath {} {}", first, second, at);
-  return fmt::format("{} and {} are closer to each other than their thickness allows {}", first, second, at);
+                    near = fmt::format("near ({:.4g}, {:.4g}, {:.4g}) m", c.at.x(), c.at.y(), c.at.z());
+  if (c.kind == Crossing::Kind::crossing) return fmt::format("{} crosses {} {}", first, second, near);
+  if (c.kind == Crossing::Kind::beneath) return fmt::format("{} lies beneath {} {}", first, second, near);
+  return fmt::format("{} and {} are closer to each other than their thickness allows {}", first, second,
+                     near);
 }
 
 std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found) {
@@ -147,11 +147,11 @@ std::string advice(const ContactModel& model, ConstVectors q, std::span<const Cr
   model.map->apply(q, x);
   const bool unwelded = std::any_of(found.begin(), found.end(), [&](const Crossing& c) {
     if (c.first_body != c.second_body || c.first_triangle < 0 || c.second_triangle < 0) return false;
-    const Vec3i &a = model.surface->triangles()[index(c.first_triangle)],
-                &b = model.surface->triangles()[index(c.second_triangle)];
+    const Vec3i &a = model.surface->triangles()[at(c.first_triangle)],
+                &b = model.surface->triangles()[at(c.second_triangle)];
     for (int i : a)
       for (int j : b)
-        if (i != j && x[index(i)] == x[index(j)]) return true;
+        if (i != j && x[at(i)] == x[at(j)]) return true;
     return false;
   });
   return unwelded ? "merge vertices of a mesh that lie at one place (Blender: Mesh > Merge > By Distance)"

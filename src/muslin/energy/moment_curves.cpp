@@ -3,14 +3,13 @@
 #include <cmath>
 #include <utility>
 
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
 
 namespace muslin {
 namespace {
 
 constexpr std::size_t block = 1024;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -20,7 +19,7 @@ MomentCurves::MomentCurves(PlateCurvatures curvatures, std::vector<double> areas
   std::vector<std::vector<Use>> by_hinge(curvatures_.hinge_count);
   for (std::size_t t = 0; t < areas_.size(); ++t)
     for (int k = curvatures_.first[t]; k < curvatures_.first[t + 1]; ++k)
-      by_hinge[index(curvatures_.hinges[index(k)])].push_back({static_cast<int>(t), k});
+      by_hinge[at(curvatures_.hinges[at(k)])].push_back({static_cast<int>(t), k});
   first_use_.push_back(0);
   for (const std::vector<Use>& uses : by_hinge) {
     uses_.insert(uses_.end(), uses.begin(), uses.end());
@@ -31,7 +30,7 @@ MomentCurves::MomentCurves(PlateCurvatures curvatures, std::vector<double> areas
 Vec2 MomentCurves::curvature(std::size_t triangle, std::span<const double> bent) const {
   Vec2 sum = Vec2::Zero();
   for (int k = curvatures_.first[triangle]; k < curvatures_.first[triangle + 1]; ++k)
-    sum += bent[index(curvatures_.hinges[index(k)])] * curvatures_.weights[index(k)];
+    sum += bent[at(curvatures_.hinges[at(k)])] * curvatures_.weights[at(k)];
   return sum;
 }
 
@@ -79,8 +78,8 @@ void MomentCurves::add_transposed(std::span<const Vec2> of_triangle, std::span<d
   parallel_for(moments.size(), block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t h = begin; h < end; ++h)
       for (int k = first_use_[h]; k < first_use_[h + 1]; ++k) {
-        const Use& use = uses_[index(k)];
-        moments[h] += curvatures_.weights[index(use.entry)].dot(of_triangle[index(use.triangle)]);
+        const Use& use = uses_[at(k)];
+        moments[h] += curvatures_.weights[at(use.entry)].dot(of_triangle[at(use.triangle)]);
       }
   });
 }

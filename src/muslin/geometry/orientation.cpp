@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "muslin/core/index.hpp"
 #include "muslin/geometry/winding_number.hpp"
 
 namespace muslin {
@@ -57,7 +58,6 @@ class OrientedSets {
   bool orientable(int root) const { return orientable_[at(root)] != 0; }
 
  private:
-  static std::size_t at(int face) { return static_cast<std::size_t>(face); }
   std::vector<int> parent_;
   std::vector<char> against_;  // relative to the parent
   std::vector<char> orientable_;
