@@ -1,9 +1,7 @@
 // Names, lists and removes the files of a run.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

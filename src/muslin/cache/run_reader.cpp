@@ -1,11 +1,9 @@
 #include "muslin/cache/run_reader.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "muslin/cache/run_files.hpp"

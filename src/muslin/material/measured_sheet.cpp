@@ -1,6 +1,5 @@
 #include "muslin/material/measured_sheet.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -56,7 +58,7 @@ struct MaterialFile {
     const TomlValue* numbers = content.find(table);
     return numbers != nullptr && numbers->find(key) != nullptr;
   }
-  bool guesses_at(const std::string& name) const {
+  bool lists_as_guess(const std::string& name) const {
     return std::find(guesses.begin(), guesses.end(), name) != guesses.end();
   }
   std::string words(const char* key) const {
@@ -121,7 +123,7 @@ class Tracer {
   bool is_guess(const std::string& key) const {
     const NumberOrigin from = origin(key);
     return (from == NumberOrigin::library || from == NumberOrigin::file) && file_ &&
-           file_->guesses_at(table_ + "." + key);
+           file_->lists_as_guess(table_ + "." + key);
   }
 
  private:

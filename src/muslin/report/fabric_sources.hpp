@@ -1,7 +1,6 @@
 // Traces every number of a run's materials to its source.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

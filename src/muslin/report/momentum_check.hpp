@@ -1,7 +1,6 @@
 // Checks that the momentum of a run is that which gravity gave it.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 #include "muslin/report/report_page.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 

@@ -27,7 +27,6 @@ std::string text_or_empty(const fs::path& file) {
 void read_tables(const RunReader& run, RunEvidence& evidence) {
   const std::string table = read_file(run.directory() / "diagnostics.csv");
   evidence.has_step_columns = table.starts_with(diagnostics_header);
-  evidence.rows_in_table = static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')) - 1;
   for (const Diagnostics& row : run.diagnostics()) evidence.quality.add(row);
   const fs::path stretches = run.directory() / "stretch.csv";
   std::error_code code;

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -32,7 +31,6 @@ struct RunEvidence {
   std::string scene_text;             ///< scene.toml; empty if it is missing
   bool being_written = false;         ///< by another process, at this moment
   bool has_step_columns = false;      ///< diagnostics.csv says which steps converged
-  std::size_t rows_in_table = 0;      ///< of diagnostics.csv, complete frames or not
   RunQuality quality;                 ///< of all complete frames
   bool has_stretch_limits = false;
 

@@ -1,6 +1,5 @@
 #include "muslin/report/stretch_place.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>

@@ -15,10 +15,9 @@ struct StretchPlace {
   Vec3 at = Vec3::Zero();  ///< middle of the triangle, or of the spring [m]
 };
 
-/// Returns the triangle of a shell, or the edge or diagonal of a voxel, that is longest at a frame relative
-/// to frame 0; nothing if no body deforms. A shell whose shape at rest is another mesh, or that starts
-/// stretched, has another stretch than this. `full_bracing`: by body of the run, true for lattices with all
-/// diagonals. Errors: file.
+/// Returns the triangle of a shell, or the spring of a voxel, that is stretched most at a frame, relative to
+/// the start; nothing if no body deforms. A shell whose shape at rest is another mesh, or that starts
+/// stretched, has another stretch than this. Errors: file.
 std::optional<StretchPlace> find_largest_stretch(const RunReader& run, int frame);
 
 }  // namespace muslin
