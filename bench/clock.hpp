@@ -15,9 +15,8 @@ class Clock {
   double wall() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-  /// What the code would have taken on the wall of an idle machine, as well as can be told [s]: on a machine
-  /// that is shared, the processor time of one thread is the better clock; its ticks are too coarse below 1
-  /// ms.
+  /// Returns an estimate of the wall time on an idle machine [s]. On a shared machine the processor time of
+  /// one thread is the better clock; its ticks are too coarse below 1 ms.
   double seconds() const {
     const double busy = static_cast<double>(std::clock() - used_) / CLOCKS_PER_SEC;
     const double passed = wall();

@@ -26,7 +26,7 @@ struct Drape {
                                                std::vector<ContactBody>{{}});
     distance = std::min(2e-3, 0.2 / (n - 1));
   }
-  /// Where the points go in a step of 1/240 s when the cloth falls slowly [m].
+  /// Returns the points after a step of 1/240 s in which the cloth falls slowly [m].
   std::vector<Vec3> moved() const {
     std::vector<Vec3> after = cloth.positions;
     for (Vec3& p : after) p += Vec3(0.1, -0.5, 0.05) / 240;

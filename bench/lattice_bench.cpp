@@ -52,7 +52,7 @@ struct Reference {
   }
 
  private:
-  /// What went wrong, empty if nothing.
+  /// Returns the error in words; empty if there was none.
   std::string make(const ProblemSettings& settings) try {
     problem = make_problem(settings);
     textbook = std::make_unique<TextbookSolver>(problem.textbook());
@@ -85,7 +85,7 @@ void describe(benchmark::State& state, const Reference& reference, const Least& 
   describe(state, reference);
 }
 
-/// What came out of a step.
+/// Adds the result of a step to the counters.
 void describe(benchmark::State& state, const Reference& reference, ConstVectors result) {
   const TextbookMeasure measure = reference.measure(result);
   state.counters["error"] = reference.error(result);

@@ -1,4 +1,4 @@
-// What a step of muslin spends its time on.
+// Measures the parts of a step's time.
 #pragma once
 
 #include <map>

@@ -18,7 +18,7 @@ def bounded(time):
 
 
 def ratio(slow, run):
-    """Of a textbook's time to that of a run of muslin."""
+    """The ratio of a textbook's time to that of a run of muslin."""
     if slow[0] is None or "ms" not in run:
         return "–"
     return ("" if slow[1] else "> ") + f"{slow[0] / run['ms']:.1f}"

@@ -5,14 +5,14 @@ FORMAT = 2  # of the files in bench/results
 KEPT = re.compile(r"ms$|_s$|_GB$|_ns$|_newton$|_linear$|^(name|error|residual|energy|newton|linear|vertices|voxels|"
                   r"triangles|compressed|bytes_per_vertex|iteration_bytes|stiffness_number|bytes_per_second|"
                   r"error_message)$|^iterations_")
-# Where methods end in different minima, the same residual (in multiples of gravity) stands for the same error.
+# If methods end in different minima, the same residual (in multiples of gravity) stands for the same error.
 RESIDUAL = {1e-3: 1, 1e-6: 1e-3}
 ERROR_GOAL = {1e-3: "error1e-3", 1e-6: "error1e-6"}
 RESIDUAL_GOAL = {1e-3: "residual1e-0", 1e-6: "residual1e-3"}
 
 
 def kept(data, before):
-    """What a results file holds; benchmarks that were not run now come from `before`, the last file."""
+    """The content of a results file; benchmarks that were not run now come from `before`, the last file."""
     runs = {}
     for run in data["benchmarks"]:
         name = run["name"].replace("/iterations:1/manual_time", "")

@@ -35,7 +35,7 @@ struct TextbookReport {
   bool converged = false;
 };
 
-/// What a start of a step makes of a position: for comparing the results of any two methods.
+/// Measures of a position as the end of a step, by which the results of any two methods are compared.
 struct TextbookMeasure {
   double energy = 0;    ///< E(x), the gravity's constant left out [J s²]
   double residual = 0;  ///< as in TextbookReport
@@ -58,7 +58,7 @@ class TextbookSolver {
   /// One linearly implicit step on the exact tangent, the linear system to relative residual `forcing`.
   TextbookReport linearly_implicit_euler(double forcing, std::vector<Vec3>& x, std::vector<Vec3>& v);
 
-  /// Of `result` as the end of a step that began with (x, v).
+  /// Measures `result` as the end of a step that began with (x, v).
   TextbookMeasure measure(ConstVectors x, ConstVectors v, ConstVectors result) const;
 
   /// Bytes of matrix, preconditioner and vectors.

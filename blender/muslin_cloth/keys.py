@@ -41,12 +41,12 @@ def _plain(text):
 
 
 def sentence(table, name, **chosen):
-    """What the key means, for a tooltip."""
+    """The meaning of the key, for a tooltip."""
     return _plain(re.sub(r"\. (Default: |May change on --resume).*$", "", key(table, name, **chosen)["description"]))
 
 
 def meaning(table, name, word):
-    """What a word means as the value of the key."""
+    """The meaning of a word as the value of the key."""
     for quoted, text in re.findall(r'`"(\w+)"`[:,] ([^·]*)', key(table, name)["description"]):
         if quoted == word:
             return _plain(re.sub(r"\. Default: .*$", "", text))

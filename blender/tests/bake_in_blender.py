@@ -67,7 +67,7 @@ class Baking(HostTest):
         self.assertLess(np.abs(points(obj, 6)[held] - expected).max(), 1e-3, "pins go with the parent")
 
     def test_pins_follow_an_armature_and_a_shape_key(self):
-        """What stands above the Muslin modifier moves the pins, what stands below refines the cloth."""
+        """Modifiers above the Muslin modifier move the pins, those below it refine the cloth."""
         scene = bpy.context.scene
         obj = grid()
         held = [v.index for v in obj.data.vertices if v.groups]
@@ -257,7 +257,7 @@ class Contact(HostTest):
 
 
 class Lifecycle(HostTest):
-    """What happens to a bake, and what is left of it."""
+    """Bakes that are begun, cancelled, resumed or lost."""
 
     def begin(self, frames=600, **settings):
         bpy.context.scene.frame_end = frames
@@ -371,7 +371,7 @@ class Lifecycle(HostTest):
             np.testing.assert_array_equal(points(obj, frame), before[frame])
         self.assertGreater(np.abs(points(obj, 6) - before[6]).max(), 1e-3)
         self.assert_plays(obj, "Cloth", 1, 8)
-        # What cannot be changed on the way is said, and costs nothing.
+        # A setting that cannot change during a bake is named, and no frame is lost.
         obj.muslin.fabric = "denim"
         scene.frame_set(4)
         after = points(obj, 8)

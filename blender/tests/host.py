@@ -1,4 +1,4 @@
-"""What tests inside Blender share: the add-on switched on, scratch folders, cloth to bake.
+"""Helpers that tests inside Blender share: the add-on switched on, scratch folders, cloth to bake.
 
 Run a test file with `blender -b --factory-startup --python-exit-code 3 --python FILE` or with a Python that has
 the bpy module. MUSLIN_PROGRAM is the muslin program."""
@@ -87,7 +87,7 @@ def points(obj, frame=None):
 
 
 def cached(folder, body, frame, scale=1.0):
-    """What the run's own cache holds, in Blender's world."""
+    """The points in the cache of the run, in Blender's world."""
     p = module("point_cache").Reader(folder / "run" / f"{body}.skin.pc2").read(frame) / scale
     return np.stack([p[:, 0], -p[:, 2], p[:, 1]], -1)
 

@@ -1,4 +1,4 @@
-"""What the tests of the module share: places, a small flag, a shell."""
+"""Fixtures that the tests of the module share: places, a small flag, a shell."""
 
 import os
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What the pages on other programs say about files, as far as it can be checked without those programs."""
+"""Checks the statements of the pages on other programs about files, as far as this works without those programs."""
 
 import re
 import sys

@@ -14,7 +14,7 @@ def box(size) -> muslin.Mesh:
 
 
 def box_distance(x, size):
-    """Of points to the surface of the box [0, size], negative inside."""
+    """Distances of points to the surface of the box [0, size], negative inside."""
     q = np.abs(x - np.array(size) / 2) - np.array(size) / 2
     return np.linalg.norm(np.maximum(q, 0), axis=1) + np.minimum(q.max(axis=1), 0)
 

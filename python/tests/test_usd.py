@@ -10,7 +10,7 @@ import muslin.usd
 
 
 def complaints(file) -> list[str]:
-    """Of all of USD's validators: what usdchecker prints."""
+    """Errors that all of USD's validators find, as usdchecker prints them."""
     context = UsdValidation.ValidationContext(UsdValidation.ValidationRegistry().GetOrLoadAllValidators())
     return [error.GetErrorAsString() for error in context.Validate(Usd.Stage.Open(str(file)))]
 

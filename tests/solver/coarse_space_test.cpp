@@ -56,7 +56,7 @@ class ByVertex {
   std::size_t positions_ = 0;
 };
 
-/// What a test of the linear algebra needs: two lattices with pins, one of them with a hole, at any x, and a
+/// The input of a test of the linear algebra: two lattices with pins, one of them with a hole, at any x, and a
 /// potential that is neither couplings nor blocks.
 struct Bodies {
   explicit Bodies(double noise) {

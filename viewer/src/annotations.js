@@ -1,4 +1,4 @@
-// What acts on the bodies: pins as small balls, forces as arrows with their size beside them.
+// Draws what acts on the bodies: pins as small balls, forces as arrows with their size beside them.
 import {
   ConeGeometry, CylinderGeometry, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial,
   SphereGeometry, Vector3,

@@ -1,4 +1,4 @@
-// Where in the run we are, and how playing moves it. Knows nothing of screens.
+// Holds the present time of the run and moves it during playback, independently of the screen.
 
 export const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
 

@@ -1,5 +1,5 @@
-// What the camera should see: everything that moves, and of what stands still only what is near it. A floor reaches
-// farther than anyone wants to look.
+// Chooses what the camera shows: everything that moves, and static things near it. A floor is too large to be shown
+// whole.
 
 /** Whether the points of a track stay where they are. */
 function still(track, frames) {

@@ -1,4 +1,4 @@
-// What keys do, and the list that says so.
+// The keys of the keyboard: their actions, and the list that explains them.
 
 /** [what the list shows, what it says, {key: action}] */
 export function keyTable(act) {

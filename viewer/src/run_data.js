@@ -1,4 +1,4 @@
-// What `muslin view` put into the page, made usable: its description, its arrays, and the motion of its
+// Decodes the data that `muslin view` put into the page: its description, its arrays, and the motion of its
 // points. The file format is that of src/muslin/view/ (point_packer.hpp, page_content.hpp).
 
 /** Bytes of base64 text. */

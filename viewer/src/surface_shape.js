@@ -1,4 +1,4 @@
-// What follows from the points of a surface: smooth normals, stretch, bounds. Arrays in, arrays out.
+// Computes smooth normals, stretch and bounds from the points of a surface. Arrays in, arrays out.
 
 /**
  * Smooth normals, weighted by the angles of the corners so that they do not depend on how polygons were cut.

@@ -1,4 +1,4 @@
-// What the page computes without a screen.
+// Tests the computations of the page that need no screen.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { keyed } from '../src/annotations.js';
