@@ -197,9 +197,6 @@ def test_may_read_but_not_change_the_simulation(flag):
         simulation.advance()
     assert np.allclose(times, np.arange(4) / 96)
 
-    def run_on(x, v, t):
-        simulation.advance()
-
     other = flag()
     other.add_force(lambda x, v, t: other.step())
     with pytest.raises(muslin.UsageError, match="calls back"):

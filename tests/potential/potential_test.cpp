@@ -1,4 +1,4 @@
-// The potentials that need no lattice, the range wrapper, and the positive semidefinite part.
+// The potentials that need no lattice, and the range wrapper.
 #include <memory>
 
 #include "support/potential_battery.hpp"
@@ -6,22 +6,9 @@
 
 #include "muslin/potential/mass_damping.hpp"
 #include "muslin/potential/restricted.hpp"
-#include "muslin/potential/spd.hpp"
 
 namespace muslin {
 namespace {
-
-TEST(PositiveSemidefinitePart, CutsNegativeEigenvaluesAndKeepsTheRest) {
-  const Mat3 q = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
-  const Mat3 a = q * Vec3(-2, 0.5, 3).asDiagonal() * q.transpose();
-  const Mat3 expected = q * Vec3(0, 0.5, 3).asDiagonal() * q.transpose();
-  EXPECT_LE((positive_semidefinite_part<3>(a) - expected).norm(), 1e-13);
-  EXPECT_LE((positive_semidefinite_part<3>(expected) - expected).norm(), 1e-13);
-  Eigen::Matrix<double, 12, 12> b = Eigen::Matrix<double, 12, 12>::Random();
-  b = (b + b.transpose()).eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>> eigen(positive_semidefinite_part<12>(b));
-  EXPECT_GE(eigen.eigenvalues()[0], -1e-13);
-}
 
 StepContext step_at_rest(const std::vector<Vec3>& x, const std::vector<Vec3>& v, double dt) {
   StepContext step;

@@ -23,13 +23,11 @@ MUSLIN_VECTOR_CODE void inertia(const double* __restrict x, const double* __rest
     w[i] = 0.5 * m[i] * (dx * dx + dy * dy + dz * dz);
   }
 }
-/// The same, g = scale g + m (x − x̃), zero on held vertices, along = g·(x − x̃), squares = |g|² and ratios =
-/// |g|² / m².
+/// w = ½ m |x − x̃|², g = scale g + m (x − x̃), zero on held vertices, squares = |g|² and ratios = |g|² / m².
 MUSLIN_VECTOR_CODE void inertia_and_gradient(const double* __restrict x, const double* __restrict prediction,
                                              const double* __restrict m, const std::uint8_t* __restrict held,
                                              double scale, int n, double* __restrict g, double* __restrict w,
-                                             double* __restrict along, double* __restrict squares,
-                                             double* __restrict ratios) {
+                                             double* __restrict squares, double* __restrict ratios) {
   for (int i = 0; i < n; ++i) {
     const double dx = x[3 * i] - prediction[3 * i], dy = x[3 * i + 1] - prediction[3 * i + 1],
                  dz = x[3 * i + 2] - prediction[3 * i + 2];
@@ -40,7 +38,6 @@ MUSLIN_VECTOR_CODE void inertia_and_gradient(const double* __restrict x, const d
     g[3 * i] = free ? gx : 0.0;
     g[3 * i + 1] = free ? gy : 0.0;
     g[3 * i + 2] = free ? gz : 0.0;
-    along[i] = free ? gx * dx + gy * dy + gz * dz : 0.0;
     squares[i] = free ? gx * gx + gy * gy + gz * gz : 0.0;
     ratios[i] = squares[i] / (m[i] * m[i]);
   }
@@ -129,12 +126,9 @@ void for_each_chunk(std::size_t begin, std::size_t end, const Body& body) {
 
 struct IncrementalPotential::Inertia {
   double value = 0;
-  double along = 0;  // gᵀ(x − x̃)
   Worst worst;
 
-  Inertia operator+(const Inertia& later) const {
-    return {value + later.value, along + later.along, worst + later.worst};
-  }
+  Inertia operator+(const Inertia& later) const { return {value + later.value, worst + later.worst}; }
 };
 
 IncrementalPotential::IncrementalPotential(const StepProblem& problem, ConstVectors prediction, double dt)
@@ -160,12 +154,10 @@ IncrementalPotential::Inertia IncrementalPotential::add_inertia(ConstVectors x, 
   return parallel_sum(size(), vector_grain, Inertia{}, [&](std::size_t begin, std::size_t end) {
     Inertia sum;
     for_each_chunk(begin, end, [&](std::size_t v, int n) {
-      alignas(64) double w[inertia_chunk], along[inertia_chunk], squares[inertia_chunk],
-          ratios[inertia_chunk];
+      alignas(64) double w[inertia_chunk], squares[inertia_chunk], ratios[inertia_chunk];
       inertia_and_gradient(x[v].data(), prediction_[v].data(), &problem_.masses[v], &problem_.fixed[v],
-                           dt_ * dt_, n, g[v].data(), w, along, squares, ratios);
+                           dt_ * dt_, n, g[v].data(), w, squares, ratios);
       sum.value += sum_of(w, n);
-      sum.along += sum_of(along, n);
       sum.worst.consider(squares, ratios, n, v);
     });
     return sum;
@@ -184,8 +176,7 @@ IncrementalPotential::Evaluation IncrementalPotential::evaluate(ConstVectors x, 
   for (const Potential* potential : problem_.potentials)
     terms.push_back(dt_ * dt_ * potential->add_gradient_and_value(x, g));
   const Inertia inertia = add_inertia(x, g);
-  Evaluation result{
-      {inertia.value, inertia.value}, imbalance_of(inertia.worst, dt_), inertia.value - inertia.along};
+  Evaluation result{{inertia.value, inertia.value}, imbalance_of(inertia.worst, dt_)};
   for (const double term : terms) result.value += term;
   return result;
 }

@@ -54,9 +54,6 @@ class IncrementalPotential {
   struct Evaluation {
     Value value;
     Imbalance imbalance;
-    /// Lower bound of the value at x̃ minus that at x, if all potentials are convex between them: ½ (x − x̃)ᵀ
-    /// M (x − x̃) − gᵀ(x − x̃) [J s²].
-    double prediction_above = 0;
   };
   Evaluation evaluate(ConstVectors x, Vectors g) const;
   /// Returns the part of the imbalance due to rounding: half a unit in the last place of every coordinate,

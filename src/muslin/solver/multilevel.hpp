@@ -40,7 +40,6 @@ class Multilevel {
   /// solution = B · right side, B ≈ the inverse of the matrix.
   void solve() { solve(0); }
 
-  std::size_t level_count() const { return levels_.size(); }
   std::size_t bytes() const;
 
  private:

@@ -35,18 +35,6 @@ inline double dot(ConstVectors a, ConstVectors b) {
   });
 }
 
-/// y = −y; returns xᵀy.
-inline double negate_and_dot(ConstVectors x, Vectors y) {
-  return parallel_sum(x.size(), vector_grain, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t v = begin; v < end; ++v) {
-      y[v] = -y[v];
-      sum += x[v].dot(y[v]);
-    }
-    return sum;
-  });
-}
-
 /// y += t x
 inline void add(double t, ConstVectors x, Vectors y) {
   parallel_for(x.size(), vector_grain, [&](std::size_t begin, std::size_t end) {
