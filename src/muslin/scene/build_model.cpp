@@ -8,9 +8,10 @@
 
 #include "muslin/component/kinds.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/progress_part.hpp"
 #include "muslin/potential/restricted.hpp"
 #include "muslin/scene/build_contact.hpp"
-#include "muslin/scene/build_loads.hpp"
+#include "muslin/scene/build_pins.hpp"
 #include "muslin/scene/force_kinds.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/validate.hpp"
@@ -19,14 +20,8 @@ namespace muslin {
 namespace {
 
 Progress component_progress(const Progress& whole, std::size_t index, std::size_t count) {
-  Progress part;
-  part.cancelled = whole.cancelled;
-  if (whole.report) {
-    part.report = [&whole, index, count](double fraction, std::string_view stage) {
-      whole.report((static_cast<double>(index) + fraction) / static_cast<double>(count), stage);
-    };
-  }
-  return part;
+  const auto share = [count](std::size_t i) { return static_cast<double>(i) / static_cast<double>(count); };
+  return progress_part(whole, share(index), share(index + 1));
 }
 
 /// Returns the sources of all components, in the order of Model::bodies.

@@ -5,7 +5,7 @@
 
 namespace muslin {
 
-/// Adds the pins and the probes of model.scene to `model`, whose components, rest positions and
+/// Add the pins and the probes of model.scene to `model`, whose components, rest positions and
 /// masses already exist. Errors: input, with the place in the scene.
 void build_pins(Model& model);
 void build_probes(Model& model);

@@ -1,4 +1,4 @@
-#include "muslin/scene/build_loads.hpp"
+#include "muslin/scene/build_pins.hpp"
 
 #include <utility>
 
