@@ -119,14 +119,14 @@ MaterialOfAShell = TypedDict(
         "membrane_weft": Optional[float],  # force per width and strain along weft [N/m]
         "membrane_shear": Optional[float],  # force per width and radian [N/m]
         "warp_curve": Optional[Points],  # measured, in place of `membrane_warp`: up to 10 points `[[strain, force per width], …]` of a strip pulled along warp [1, N/m]
-        "weft_curve": Optional[Points],  # the same along weft [1, N/m]
+        "weft_curve": Optional[Points],  # in place of `membrane_weft`: points of a strip pulled along weft [1, N/m]
         "shear_curve": Optional[Points],  # in place of `membrane_shear`: points `[[angle, force per length], …]` of a shear test [°, N/m]
-        "poisson": Optional[float],  # of stretch and of bending: geometric mean of the two directions' Poisson's ratios
+        "poisson": Optional[float],  # Poisson's ratio of stretch and bending: geometric mean of the two directions
         "bending_warp": Optional[float],  # moment per width and curvature when warp bends [N·m]
         "bending_weft": Optional[float],  # moment per width and curvature when weft bends [N·m]
         "bending_bias": Optional[float],  # moment per width and curvature for bending at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer resists twisting [N·m]
         "bending_warp_curve": Optional[Points],  # measured, in place of `bending_warp`: up to 10 points `[[curvature, moment per width], …]` [1/m, N]
-        "bending_weft_curve": Optional[Points],  # moment per width and curvature when weft bends [1/m, N]
+        "bending_weft_curve": Optional[Points],  # in place of `bending_weft`: points `[[curvature, moment per width], …]` when weft bends [1/m, N]
         "mass_damping": Optional[float],  # Rayleigh's α: slows all motion [1/s]
         "stiffness_damping": Optional[float],  # Rayleigh's β of stretch and shear [s]
         "bending_damping": Optional[float],  # Rayleigh's β of bending [s]
@@ -138,7 +138,7 @@ MaterialOfALattice = TypedDict(
     "MaterialOfALattice",
     {
         "base": Optional[str],  # a material by name or path; the other keys change it
-        "shear_modulus": Optional[float],  # of springs, only with `youngs_modulus` [N/m²]
+        "shear_modulus": Optional[float],  # shear modulus of the springs, only with `youngs_modulus` [N/m²]
         "density": Optional[float],  # mass per volume [kg/m³]
         "edge_modulus": Optional[float],  # modulus of springs along voxel edges; a spring's constant is modulus × voxel width [N/m²]
         "face_diagonal_modulus": Optional[float],  # modulus of springs along face diagonals [N/m²]
@@ -276,8 +276,8 @@ SphereCollider = TypedDict(
         "center": Optional[Vector],  # its centre [m]
         "radius": Required[float],  # its radius [m]
         "density": Optional[float],  # makes it a rigid body of this density; a mesh must be closed. Without it gravity and other forces do not act on it [kg/m³]
-        "velocity": Optional[Vector],  # at the start; only with a density [m/s]
-        "angular_velocity": Optional[Vector],  # at the start, about its centre of mass, along the axis of rotation; only with a density [degrees/s]
+        "velocity": Optional[Vector],  # velocity at the start; only with a density [m/s]
+        "angular_velocity": Optional[Vector],  # rate of rotation at the start, along the axis through the centre of mass; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
@@ -295,8 +295,8 @@ CapsuleCollider = TypedDict(
         "points": Required[Points],  # the two ends of its axis, `[[x, y, z], [x, y, z]]`; round caps reach a radius beyond [m]
         "radius": Required[float],  # its radius [m]
         "density": Optional[float],  # makes it a rigid body of this density; a mesh must be closed. Without it gravity and other forces do not act on it [kg/m³]
-        "velocity": Optional[Vector],  # at the start; only with a density [m/s]
-        "angular_velocity": Optional[Vector],  # at the start, about its centre of mass, along the axis of rotation; only with a density [degrees/s]
+        "velocity": Optional[Vector],  # velocity at the start; only with a density [m/s]
+        "angular_velocity": Optional[Vector],  # rate of rotation at the start, along the axis through the centre of mass; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
@@ -312,11 +312,11 @@ BoxCollider = TypedDict(
         "name": Optional[str],  # different for each body and collider
         "shape": Required[Literal["box"]],  # `"plane"`, `"sphere"`, `"capsule"`, `"box"` or `"mesh"`
         "center": Optional[Vector],  # its centre [m]
-        "size": Required[Vector],  # along x, y and z [m]
+        "size": Required[Vector],  # lengths along x, y and z [m]
         "rotate": Optional[Vector],  # as of a body, about its centre [degrees]
         "density": Optional[float],  # makes it a rigid body of this density; a mesh must be closed. Without it gravity and other forces do not act on it [kg/m³]
-        "velocity": Optional[Vector],  # at the start; only with a density [m/s]
-        "angular_velocity": Optional[Vector],  # at the start, about its centre of mass, along the axis of rotation; only with a density [degrees/s]
+        "velocity": Optional[Vector],  # velocity at the start; only with a density [m/s]
+        "angular_velocity": Optional[Vector],  # rate of rotation at the start, along the axis through the centre of mass; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
@@ -331,7 +331,7 @@ MeshCollider = TypedDict(
     {
         "name": Optional[str],  # different for each body and collider
         "shape": Required[Literal["mesh"]],  # `"plane"`, `"sphere"`, `"capsule"`, `"box"` or `"mesh"`
-        "mesh": Required[Path],  # the same formats as for a body; open meshes stop bodies from both sides
+        "mesh": Required[Path],  # a file in a format of a body's mesh; open meshes stop bodies from both sides
         "translate": Optional[Vector],  # as of a body [m]
         "rotate": Optional[Vector],  # as of a body [degrees]
         "scale": Optional[Union[float, Vector]],  # a number or one per axis; applied first
@@ -339,8 +339,8 @@ MeshCollider = TypedDict(
         "frame_rate": Optional[float],  # frames per second of the sequence; not for an `.mdd`, which stores its own frame times [1/s]
         "start": Optional[float],  # time of the first sample; the collider is static before the first and after the last sample [s]
         "density": Optional[float],  # makes it a rigid body of this density; a mesh must be closed. Without it gravity and other forces do not act on it [kg/m³]
-        "velocity": Optional[Vector],  # at the start; only with a density [m/s]
-        "angular_velocity": Optional[Vector],  # at the start, about its centre of mass, along the axis of rotation; only with a density [degrees/s]
+        "velocity": Optional[Vector],  # velocity at the start; only with a density [m/s]
+        "angular_velocity": Optional[Vector],  # rate of rotation at the start, along the axis through the centre of mass; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
@@ -358,7 +358,7 @@ LatticeBody = TypedDict(
         "name": Optional[str],  # used in file names, messages and by pins; different for each body
         "mesh": Required[Path],  # `.obj`, `.ply`, `.stl`, `.gltf`, `.glb`, `.dae` or `.fbx`
         "model": Optional[Literal["lattice"]],  # `"lattice"`: voxels with springs, filled into the mesh · `"shell"`: the mesh itself as [thin cloth](shells.md)
-        "thickness": Optional[float],  # of a lattice that is a sheet: an open mesh, or one that encloses nothing. An open mesh with small holes is filled as a solid unless `thickness` is given [m]
+        "thickness": Optional[float],  # thickness of a lattice that is a sheet: an open mesh, or one that encloses nothing. An open mesh with small holes is filled as a solid unless `thickness` is given [m]
         "voxel_width": Required[float],  # edge of a voxel: halving it doubles the detail and takes at least eight times as long for a solid, four times for a sheet [m]
         "voxels": Optional[Literal["cover", "threshold"]],  # `"cover"`: every voxel that meets the solid · `"threshold"`: every voxel whose centre has a signed distance below `threshold`
         "threshold": Optional[float],  # signed distance, negative inside; only with `voxels = "threshold"` [voxel widths]
@@ -366,10 +366,10 @@ LatticeBody = TypedDict(
         "mass": Optional[Literal["solid", "cells"]],  # `"solid"`: mass and stiffness of a voxel are scaled by the share that the solid fills · `"cells"`: every voxel has full mass and stiffness
         "boundary_springs": Optional[Literal["full", "shared"]],  # `"full"`: springs on the surface are as stiff as inside · `"shared"`: scaled by the share of voxels around them, as in a solid cut out of a block. Without it a sheet of one voxel is 1.75 times too stiff in stretch and 4.5 times in bending
         "material": Required[Union[str, "MaterialOfALattice"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
-        "translate": Optional[Vector],  # applied last [m]
-        "rotate": Optional[Vector],  # about the x axis, then y, then z [degrees]
+        "translate": Optional[Vector],  # displacement, applied last [m]
+        "rotate": Optional[Vector],  # angles about the x axis, then y, then z [degrees]
         "scale": Optional[Union[float, Vector]],  # a number or one per axis; applied first
-        "velocity": Optional[Vector],  # at the start [m/s]
+        "velocity": Optional[Vector],  # velocity at the start [m/s]
         "contact": Optional[bool],  # `false` excludes the body from contact
         "self_contact": Optional[bool],  # `false` excludes contact of the body with itself
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
@@ -389,10 +389,10 @@ ShellBody = TypedDict(
         "warp": Optional[Vector],  # direction of the warp threads in the mesh as modelled
         "stretch_limit": Optional[float],  # largest stretch of a triangle in any direction, as length over rest length; 1.05 allows 5 %
         "material": Required[Union[str, "MaterialOfAShell"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
-        "translate": Optional[Vector],  # applied last [m]
-        "rotate": Optional[Vector],  # about the x axis, then y, then z [degrees]
+        "translate": Optional[Vector],  # displacement, applied last [m]
+        "rotate": Optional[Vector],  # angles about the x axis, then y, then z [degrees]
         "scale": Optional[Union[float, Vector]],  # a number or one per axis; applied first
-        "velocity": Optional[Vector],  # at the start [m/s]
+        "velocity": Optional[Vector],  # velocity at the start [m/s]
         "contact": Optional[bool],  # `false` excludes the body from contact
         "self_contact": Optional[bool],  # `false` excludes contact of the body with itself
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean

@@ -14,12 +14,12 @@ namespace {
 /// The keys of every body that follow those of its kind.
 std::vector<schema::Key> placed_keys() {
   return {
-      schema::vector("translate", &BodySettings::translate).unit("m").means("applied last"),
+      schema::vector("translate", &BodySettings::translate).unit("m").means("displacement, applied last"),
       schema::vector("rotate", &BodySettings::rotate)
           .unit("degrees")
-          .means("about the x axis, then y, then z"),
+          .means("angles about the x axis, then y, then z"),
       scale_key(&BodySettings::scale),
-      schema::vector("velocity", &BodySettings::velocity).unit("m/s").means("at the start"),
+      schema::vector("velocity", &BodySettings::velocity).unit("m/s").means("velocity at the start"),
       schema::truth("contact", &BodySettings::contact).means("`false` excludes the body from contact"),
       schema::truth("self_contact", &BodySettings::self_contact)
           .means("`false` excludes contact of the body with itself"),

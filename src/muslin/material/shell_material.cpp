@@ -131,14 +131,14 @@ schema::Table declared() {
        test_curve("weft_curve", &Sheet::weft_curve, "membrane_weft", 10)
            .unit("1, N/m")
            .otherwise("as warp")
-           .means("the same along weft"),
+           .means("in place of `membrane_weft`: points of a strip pulled along weft"),
        test_curve("shear_curve", &Sheet::shear_curve, "membrane_shear", 80)
            .unit("°, N/m")
            .means("in place of `membrane_shear`: points `[[angle, force per length], …]` of a shear test"),
        number("poisson", &ShellMaterial::poisson)
            .range({-0.99, 0.99, false})
            .otherwise("0.25")
-           .means("of stretch and of bending: geometric mean of the two directions' Poisson's ratios"),
+           .means("Poisson's ratio of stretch and bending: geometric mean of the two directions"),
        number("bending_warp", &ShellMaterial::bending_warp)
            .unit("N·m")
            .range(sheet_modulus)
@@ -164,7 +164,7 @@ schema::Table declared() {
        test_curve("bending_weft_curve", &Sheet::bending_weft_curve, "bending_weft", 1e5)
            .unit("1/m, N")
            .otherwise("as warp")
-           .means("moment per width and curvature when weft bends"),
+           .means("in place of `bending_weft`: points `[[curvature, moment per width], …]` when weft bends"),
        number("mass_damping", &ShellMaterial::mass_damping)
            .unit("1/s")
            .range(sheet_damping)

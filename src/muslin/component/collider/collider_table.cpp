@@ -97,22 +97,25 @@ const schema::Table& capsule_table() {
 }
 
 const schema::Table& box_table() {
-  static const schema::Table table = shape_table(
-      Shape::box,
-      {center_key("its centre"),
-       schema::vector("size", &Collider::size).unit("m").range(length).required().means("along x, y and z"),
-       rotate_key("as of a body, about its centre")});
+  static const schema::Table table = shape_table(Shape::box, {center_key("its centre"),
+                                                              schema::vector("size", &Collider::size)
+                                                                  .unit("m")
+                                                                  .range(length)
+                                                                  .required()
+                                                                  .means("lengths along x, y and z"),
+                                                              rotate_key("as of a body, about its centre")});
   return table;
 }
 
 const schema::Table& mesh_table() {
   static const schema::Table table = [] {
     schema::Table mesh = shape_table(
-        Shape::mesh, {schema::path("mesh", &Collider::mesh, &Collider::mesh_place)
-                          .required()
-                          .means("the same formats as for a body; open meshes stop bodies from both sides"),
-                      schema::vector("translate", &Collider::translate).unit("m").means("as of a body"),
-                      rotate_key("as of a body"), scale_key(&Collider::scale)});
+        Shape::mesh,
+        {schema::path("mesh", &Collider::mesh, &Collider::mesh_place)
+             .required()
+             .means("a file in a format of a body's mesh; open meshes stop bodies from both sides"),
+         schema::vector("translate", &Collider::translate).unit("m").means("as of a body"),
+         rotate_key("as of a body"), scale_key(&Collider::scale)});
     schema::add_rule<Collider>(mesh, [](const Collider& collider, const Subject& subject) {
       if (collider.frame_rate && collider.sequence.ends_with(".mdd"))
         throw subject.error("frame_rate", "an .mdd stores its own frame times", "take `frame_rate` out");

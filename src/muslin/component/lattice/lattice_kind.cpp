@@ -34,7 +34,7 @@ const schema::Table& input_table() {
              .otherwise("0.4 × `youngs_modulus`")
              .needs("youngs_modulus", "give both")
              .excludes("law", "a solid has no shear modulus of its own", "give `poisson`")
-             .means("of springs, only with `youngs_modulus`")});
+             .means("shear modulus of the springs, only with `youngs_modulus`")});
     schema::include<MaterialInput>(input, &MaterialInput::material, lattice_material_table());
     return input;
   }();
@@ -101,9 +101,9 @@ const schema::Table& keys() {
            .otherwise("one voxel width")
            .shown_as<Own>(
                [](const Own& own) { return schema::real(own.thickness.value_or(own.lattice.width)); })
-           .means("of a lattice that is a sheet: an open mesh, or one that encloses nothing. An open mesh "
-                  "with small "
-                  "holes is filled as a solid unless `thickness` is given"),
+           .means(
+               "thickness of a lattice that is a sheet: an open mesh, or one that encloses nothing. An open "
+               "mesh with small holes is filled as a solid unless `thickness` is given"),
        schema::within<Own>(&Own::lattice,
                            schema::number("voxel_width", &LatticeSettings::width)
                                .unit("m")

@@ -46,12 +46,13 @@ std::vector<schema::Key> rigid_keys(ColliderSettings::Shape shape) {
           .unit("m/s")
           .needs("density", remedy)
           .shown_if<Collider>(is_free)
-          .means("at the start; only with a density"),
+          .means("velocity at the start; only with a density"),
       schema::vector("angular_velocity", &Collider::angular_velocity)
           .unit("degrees/s")
           .needs("density", remedy)
           .shown_if<Collider>(is_free)
-          .means("at the start, about its centre of mass, along the axis of rotation; only with a density")};
+          .means("rate of rotation at the start, along the axis through the centre of mass; only with a "
+                 "density")};
 }
 
 }  // namespace
