@@ -15,12 +15,12 @@ void add_check(CLI::App& program) {
     bool json = false;
     std::vector<std::string> set;
   };
-  auto* command =
-      program.add_subcommand("check", "report errors of a scene or mesh, and what will be built");
+  auto* command = program.add_subcommand("check", "report errors of a scene or mesh, and what will be built");
   auto a = std::make_shared<Arguments>();
   command->add_option("FILE", a->file, "scene (.toml) or mesh file")->required();
   command->add_flag("--json", a->json, "print JSON");
-  command->add_option("--picture", a->picture, "write FILE.png of the start of a scene with crossings marked");
+  command->add_option("--picture", a->picture,
+                      "write FILE.png of the start of a scene with crossings marked");
   command->add_option("--set", a->set, "KEY=VALUE overrides a setting of the scene")->allow_extra_args(false);
   command->callback([a] {
     listen_for_interrupts();

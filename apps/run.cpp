@@ -77,12 +77,12 @@ void add_run(CLI::App& program) {
   command->add_option("--frames", arguments->frames, "last frame (default: the scene's)")
       ->check(non_negative_integer());
   command
-      ->add_option("--threads", arguments->threads, "threads (default: one per core); results do not depend on it")
+      ->add_option("--threads", arguments->threads,
+                   "threads (default: one per core); results do not depend on it")
       ->check(non_negative_integer());
   command->add_flag("--resume", arguments->resume, "continue from the last checkpoint");
   command
-      ->add_option("--resume-from", arguments->resume_from,
-                   "resume from this frame, with the current scene")
+      ->add_option("--resume-from", arguments->resume_from, "resume from this frame, with the current scene")
       ->check(non_negative_integer());
   command->add_flag("--keep-states", arguments->keep_states,
                     "keep the state of every frame for --resume-from");

@@ -80,7 +80,8 @@ void add_verify(CLI::App& program) {
     std::string test;
     bool list = false;
   };
-  auto* command = program.add_subcommand("verify", "compare simulations with closed forms and published numbers");
+  auto* command =
+      program.add_subcommand("verify", "compare simulations with closed forms and published numbers");
   auto a = std::make_shared<Arguments>();
   command->add_option("TEST", a->test, "a test, or the first word of several (default: all)");
   command->add_flag("--list", a->list, "list the tests");

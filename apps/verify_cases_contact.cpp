@@ -135,9 +135,8 @@ std::vector<Comparison> no_energy_from_nothing() {
       gain = std::max(gain, energy() - least);
       least = std::min(least, energy());
     }
-    numbers.push_back(
-        {fmt::format("energy gained over energy fallen, {}", effort), 0, gain / (first - least), 1e-4,
-         false});
+    numbers.push_back({fmt::format("energy gained over energy fallen, {}", effort), 0, gain / (first - least),
+                       1e-4, false});
   }
   return numbers;
 }

@@ -342,8 +342,8 @@ shape = "plane"
     watch.advance(simulation, 24);
     numbers.push_back({fmt::format("energy gained over energy of the fall, {}", integrator), 0,
                        watch.gained() / watch.fallen(), 1e-3, false});
-    numbers.push_back({fmt::format("work from outside [J], {}", integrator), 0, simulation.diagnostics().work, 1e-9,
-                       false});
+    numbers.push_back({fmt::format("work from outside [J], {}", integrator), 0, simulation.diagnostics().work,
+                       1e-9, false});
   }
   return numbers;
 }
@@ -354,8 +354,8 @@ std::vector<VerifyCase> trust_cases() {
   std::vector<VerifyCase> cases = {
       {"trust-rubber-ball", "a rubber ball bounces no higher than it was dropped from, and straight",
        "second law", false, rubber_ball},
-      {"trust-ball-on-held-cloth", "a light ball sinks into held cloth and rebounds", "measurement",
-       false, ball_on_held_cloth},
+      {"trust-ball-on-held-cloth", "a light ball sinks into held cloth and rebounds", "measurement", false,
+       ball_on_held_cloth},
       {"trust-stiff-fabrics", "stiff fabrics that fall on a ball gain no energy", "second law", true,
        stiff_fabrics},
       {"trust-jelly-on-slope", "a soft cube below the limit of friction stays where it was put", "Coulomb",
@@ -368,8 +368,8 @@ std::vector<VerifyCase> trust_cases() {
        "promise", true, step_choice},
       {"trust-held-back", "a pin that pulls cloth through a wall is held back and reported", "promise", false,
        held_back},
-      {"trust-rigid-impact", "a ball of lead that falls on a box of foam brings no energy", "second law", false,
-       rigid_impact},
+      {"trust-rigid-impact", "a ball of lead that falls on a box of foam brings no energy", "second law",
+       false, rigid_impact},
       {"trust-absurd", "what no one means ends in an error or in a finite result", "promise", true, absurd},
   };
   const std::vector<VerifyCase> motion = trust_motion_cases();

@@ -20,7 +20,9 @@ void add_view(CLI::App& program) {
   auto a = std::make_shared<Arguments>();
   command->add_option("RUN", a->run, "run directory")->required();
   command->add_option("-o,--output", a->page, "PAGE.html (default: RUN/view.html)");
-  command->add_option("--max-size", a->max_size, "size limit of the page [MB]; frames of a larger run are left out (default: 16)")
+  command
+      ->add_option("--max-size", a->max_size,
+                   "size limit of the page [MB]; frames of a larger run are left out (default: 16)")
       ->check(positive_number());
   command->add_flag("--quiet", a->quiet, "no progress");
   command->callback([a] {

@@ -175,7 +175,8 @@ std::vector<std::vector<Vec3>> trajectory(const std::shared_ptr<const Model>& mo
 }
 
 /// Root mean square over all vertices, in the worst of the first frames [mm].
-double distance(const std::vector<std::vector<Vec3>>& a, const std::vector<std::vector<Vec3>>& b, int frame_count) {
+double distance(const std::vector<std::vector<Vec3>>& a, const std::vector<std::vector<Vec3>>& b,
+                int frame_count) {
   double largest = 0;
   for (std::size_t f = 0; f < static_cast<std::size_t>(frame_count); ++f) {
     double sum = 0;
@@ -185,8 +186,9 @@ double distance(const std::vector<std::vector<Vec3>>& a, const std::vector<std::
   return largest;
 }
 
-/// Measures the distance of drops to those with every step solved to 1e-5, four steps a frame: until the first
-/// folds and until two frames later, when what differs grows by itself; of eight starts micrometres apart.
+/// Measures the distance of drops to those with every step solved to 1e-5, four steps a frame: until the
+/// first folds and until two frames later, when what differs grows by itself; of eight starts micrometres
+/// apart.
 void accuracy(benchmark::State& state, int n, Effort effort) {
   set_thread_count(1);
   constexpr int steps = 4, starts = 8;
@@ -210,8 +212,8 @@ void accuracy(benchmark::State& state, int n, Effort effort) {
   set_thread_count(0);
 }
 
-/// Fifty sheets of 1 m, each turned a little more than the one below and 1 cm above it, fall on each other and on a
-/// floor: `side`² vertices each.
+/// Fifty sheets of 1 m, each turned a little more than the one below and 1 cm above it, fall on each other
+/// and on a floor: `side`² vertices each.
 void layers(benchmark::State& state, int side, int threads) {
   set_thread_count(threads);
   constexpr int sheets = 50, shown = 12;
@@ -224,7 +226,8 @@ void layers(benchmark::State& state, int side, int threads) {
     const double angle = 0.12 * k;
     for (Vec3& p : cloth.positions) {
       const double x = p.x() - 0.5, z = p.z() - 0.5;
-      p = Vec3(std::cos(angle) * x - std::sin(angle) * z, 0.01 * (k + 1), std::sin(angle) * x + std::cos(angle) * z);
+      p = Vec3(std::cos(angle) * x - std::sin(angle) * z, 0.01 * (k + 1),
+               std::sin(angle) * x + std::cos(angle) * z);
     }
     scene.add_cloth(cloth);
   }
@@ -259,11 +262,10 @@ void layers(benchmark::State& state, int side, int threads) {
 
 void add(const std::string& name, Settings settings) {
   const std::string& effort = name_of(effort_names(), settings.effort);
-  benchmark::RegisterBenchmark(
-      (name + "_" + std::to_string(settings.n) + "/" + effort +
-       "/threads:" + std::to_string(settings.threads))
-          .c_str(),
-      [settings](benchmark::State& state) { run(state, settings); })
+  benchmark::RegisterBenchmark((name + "_" + std::to_string(settings.n) + "/" + effort +
+                                "/threads:" + std::to_string(settings.threads))
+                                   .c_str(),
+                               [settings](benchmark::State& state) { run(state, settings); })
       ->Iterations(1)
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);

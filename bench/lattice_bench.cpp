@@ -307,8 +307,8 @@ void add_benchmarks() {
             [=](State& s) { muslin_step(s, settings, std::stod(tolerance), threads); });
       }
     };
-    sweep(1, lengthy ? std::vector{"1e-2", "1e-4"}
-                     : std::vector{"1", "1e-1", "1e-2", "1e-3", "1e-4", "1e-5"});
+    sweep(1,
+          lengthy ? std::vector{"1e-2", "1e-4"} : std::vector{"1", "1e-1", "1e-2", "1e-3", "1e-4", "1e-5"});
     sweep(2, lengthy ? std::vector{"1e-4"} : std::vector{"1e-3", "1e-4", "1e-5"});
     // As books have it, every linear system solved to 1e-6; and with the quickest forcing term.
     const double limit = lengthy ? 15 : 60;  // [s]

@@ -203,8 +203,7 @@ TextbookReport TextbookSolver::linearly_implicit_euler(double forcing, std::vect
   for (Vec3& value : g) value = -value;
   TextbookReport report;
   report.newton_iterations = 1;
-  report.linear_iterations = conjugate_gradients(
-      g, forcing, [] { return false; }, direction);
+  report.linear_iterations = conjugate_gradients(g, forcing, [] { return false; }, direction);
   report.converged = true;
   for (std::size_t i = 0; i < count; ++i) {
     x[i] += direction[i];

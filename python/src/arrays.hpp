@@ -48,8 +48,8 @@ inline Array<const double, -1, 2> view(const std::vector<Vec2>& vectors, nb::han
                                     owner);
 }
 template <class Number>
-requires std::is_arithmetic_v<Number> Array<const Number, -1> view(const std::vector<Number>& numbers,
-                                                                   nb::handle owner) {
+  requires std::is_arithmetic_v<Number>
+Array<const Number, -1> view(const std::vector<Number>& numbers, nb::handle owner) {
   return Array<const Number, -1>(numbers.data(), {numbers.size()}, owner);
 }
 template <class Number, std::size_t columns>
@@ -74,7 +74,8 @@ inline Array<float, -1, 3> taken(std::vector<Eigen::Vector3f> vectors) {
   return Array<float, -1, 3>(reinterpret_cast<float*>(kept->data()), {kept->size(), 3}, owner);
 }
 template <class Number>
-requires std::is_arithmetic_v<Number> Array<Number, -1> taken(std::vector<Number> numbers) {
+  requires std::is_arithmetic_v<Number>
+Array<Number, -1> taken(std::vector<Number> numbers) {
   const auto [kept, owner] = given_away(std::move(numbers));
   return Array<Number, -1>(kept->data(), {kept->size()}, owner);
 }

@@ -8,7 +8,7 @@ namespace muslin::python {
 namespace {
 
 template <class Number>
-Array<Number, -1> column(const std::vector<Diagnostics>& rows, Number Diagnostics::*value) {
+Array<Number, -1> column(const std::vector<Diagnostics>& rows, Number Diagnostics::* value) {
   std::vector<Number> numbers;
   numbers.reserve(rows.size());
   for (const Diagnostics& row : rows) numbers.push_back(row.*value);

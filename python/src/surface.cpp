@@ -20,7 +20,7 @@ namespace {
 const std::vector<std::string> contour_methods = {"squares", "cubes"};
 
 template <class Value>
-std::vector<Value> of_hinges(const Shell& shell, Value Hinge::*value) {
+std::vector<Value> of_hinges(const Shell& shell, Value Hinge::* value) {
   std::vector<Value> values;
   values.reserve(shell.hinges.size());
   for (const Hinge& hinge : shell.hinges) values.push_back(hinge.*value);

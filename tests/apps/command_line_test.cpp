@@ -95,7 +95,9 @@ TEST(CommandLine, FileErrorsExitWith5) {
     SCOPED_TRACE(name);
     expect_refusal(run(scratch, {"check", scratch / name}), 5, name);
   }
-  { std::ofstream(scratch / "large.toml") << "#"; }
+  {
+    std::ofstream(scratch / "large.toml") << "#";
+  }
   std::filesystem::resize_file(scratch / "large.toml", std::uintmax_t{2} << 30);  // sparse
   expect_refusal(run(scratch, {"check", scratch / "large.toml"}), 5, "larger than 64 MiB");
 }

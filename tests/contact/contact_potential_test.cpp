@@ -274,7 +274,8 @@ TEST(MergedContacts, ListEachContactOfABallNearManyTrianglesOnce) {
   }
   const auto surface = std::make_shared<ContactSurface>(
       triangles, bodies,
-      std::vector<ContactBody>{{0, false, true, INFINITY}, {radius, false, false, 1000}, {radius, false, false, 500}});
+      std::vector<ContactBody>{
+          {0, false, true, INFINITY}, {radius, false, false, 1000}, {radius, false, false, 500}});
   ContactCandidates candidates(surface, x, range);
   candidates.update(x, x, range / 2);
   const PairDistances distances = test::distances_at(candidates, x);

@@ -76,9 +76,7 @@ TEST(TomlValue, DotsInTextsAndCommentsAreNotKeys) {
 
 TEST(TomlTable, UnknownKeysNameTheNearestKnownKeyAtTheirPlace) {
   const TomlValue root = parse_toml("duraton = 2\n", "f.toml");
-  EXPECT_EQ(message([&] {
-              TomlTable(root, "[time]", {"duration", "frame_rate"});
-            }),
+  EXPECT_EQ(message([&] { TomlTable(root, "[time]", {"duration", "frame_rate"}); }),
             "f.toml:1:1: unknown key `duraton` in [time]; did you mean `duration`?");
 }
 

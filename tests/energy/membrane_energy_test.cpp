@@ -138,7 +138,8 @@ Eigen::MatrixXd matrix(const MembraneEnergy& energy, const std::vector<double>& 
     std::vector<Vec3> unit(all.size(), Vec3::Zero());
     unit[others + static_cast<std::size_t>(i / 3)][i % 3] = 1;
     const std::vector<Vec3> column = test::product(h, unit);
-    for (Eigen::Index j = 0; j < n; ++j) result(j, i) = column[others + static_cast<std::size_t>(j / 3)][j % 3];
+    for (Eigen::Index j = 0; j < n; ++j)
+      result(j, i) = column[others + static_cast<std::size_t>(j / 3)][j % 3];
   }
   return result;
 }
@@ -148,7 +149,8 @@ double least_share(const Eigen::MatrixXd& h, const std::vector<double>& masses) 
   Eigen::VectorXd m(h.rows());
   for (Eigen::Index i = 0; i < m.size(); ++i) m[i] = masses[static_cast<std::size_t>(i / 3)];
   const Eigen::VectorXd root = m.cwiseSqrt().cwiseInverse();
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.asDiagonal() * h * root.asDiagonal()).eigenvalues()[0];
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.asDiagonal() * h * root.asDiagonal())
+      .eigenvalues()[0];
 }
 
 TEST(MembraneEnergy, MatrixIsTheExactHessianWhereMassesOutweighCompression) {

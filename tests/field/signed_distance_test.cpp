@@ -85,8 +85,7 @@ TEST(SignedDistance, SignIsRayParityOnClosedMeshes) {
 
 TEST(SignedDistance, MeshWithAHoleHasAnInside) {
   const Mesh whole = shapes::sphere(1, 4);
-  const Mesh holed = shapes::selected(
-      whole, [](std::size_t f) { return f % 97 >= 3; }, none);
+  const Mesh holed = shapes::selected(whole, [](std::size_t f) { return f % 97 >= 3; }, none);
   const SignedDistance distance(holed);
   EXPECT_FALSE(distance.watertight());
   for (const Vec3& p : shapes::points_around(whole.bounds(), 1000, 0.2))
@@ -144,8 +143,8 @@ TEST(SampleField, FeaturesThinnerThanAVoxelHaveTheRightSign) {
 
 TEST(SampleField, OpenMeshesChangeSignWhereTheirHolesAre) {
   // A box without its top: the sign changes in the opening, far from any face.
-  const Mesh open = shapes::selected(
-      shapes::box(Vec3::Zero(), Vec3(4, 4, 4)), [](std::size_t f) { return f != 1; }, none);
+  const Mesh open =
+      shapes::selected(shapes::box(Vec3::Zero(), Vec3(4, 4, 4)), [](std::size_t f) { return f != 1; }, none);
   for (const double band : {infinity, 0.3})
     expect_samples_equal_the_distance(open, grid_around(open.bounds(), 0.4), band);
 }

@@ -31,8 +31,7 @@ TEST(IsClosed, DistinguishesOpenAndClosedMeshes) {
   EXPECT_TRUE(is_closed(shapes::box(Vec3::Zero(), Vec3::Ones())));
   EXPECT_TRUE(is_closed(shapes::sphere(1, 1)));
   EXPECT_FALSE(is_closed(shapes::rectangle(1, 1)));
-  EXPECT_FALSE(is_closed(shapes::selected(
-      shapes::sphere(1, 1), [](std::size_t f) { return f != 0; }, none)));
+  EXPECT_FALSE(is_closed(shapes::selected(shapes::sphere(1, 1), [](std::size_t f) { return f != 0; }, none)));
   EXPECT_FALSE(is_closed(Mesh{}));
 }
 

@@ -59,9 +59,9 @@ std::string exported(const char* format) {
   auto scene = std::make_unique<aiScene>();
   scene->mRootNode = new aiNode("rectangle");
   scene->mNumMaterials = 1;
-  scene->mMaterials = new aiMaterial* [1] { new aiMaterial };
+  scene->mMaterials = new aiMaterial*[1]{new aiMaterial};
   scene->mNumMeshes = 1;
-  scene->mMeshes = new aiMesh* [1] { new aiMesh };
+  scene->mMeshes = new aiMesh*[1]{new aiMesh};
   aiMesh& mesh = *scene->mMeshes[0];
   mesh.mPrimitiveTypes = aiPrimitiveType_POLYGON;
   mesh.mNumVertices = 4;

@@ -46,8 +46,7 @@ TEST(Movie, HasTheFramesTheSizeAndTheRate) {
   double last = 0;
   Progress progress;
   progress.report = [&](double fraction, std::string_view) { last = fraction; };
-  write_movie(
-      path, 13, [](int frame) { return moving(frame, 81, 45); }, {.frame_rate = 25}, progress);
+  write_movie(path, 13, [](int frame) { return moving(frame, 81, 45); }, {.frame_rate = 25}, progress);
   EXPECT_EQ(last, 1);
   EXPECT_EQ(output_of("ffprobe -v error -count_frames -show_entries "
                       "stream=codec_name,width,height,pix_fmt,r_frame_rate,nb_read_frames -of csv=p=0 \"" +

@@ -322,9 +322,11 @@ TEST_F(ColliderModel, SurfacesAreThoseOfTheBodies) {
   const auto carrying = [&](std::size_t b, double points) {
     return 9.81 * model.bodies[b].statistics.mass / (0.1 * points * 1.5 * model.contact->distance);
   };
-  EXPECT_NEAR(surface.bodies()[0].stiffness, carrying(0, static_cast<double>(model.bodies[0].mesh.positions.size())), 1e-6);
+  EXPECT_NEAR(surface.bodies()[0].stiffness,
+              carrying(0, static_cast<double>(model.bodies[0].mesh.positions.size())), 1e-6);
   EXPECT_EQ(surface.bodies()[1].radius, 0.05);
-  EXPECT_NEAR(surface.bodies()[1].stiffness, carrying(1, static_cast<double>(model.bodies[1].mesh.positions.size())), 1e-6);
+  EXPECT_NEAR(surface.bodies()[1].stiffness,
+              carrying(1, static_cast<double>(model.bodies[1].mesh.positions.size())), 1e-6);
   EXPECT_EQ(surface.bodies()[2].radius, 0.3);
   EXPECT_TRUE(surface.bodies()[2].fixed);
   EXPECT_EQ(surface.triangles().size(), 24u + 24 + 1 + 12);

@@ -15,8 +15,7 @@ namespace {
 class Watched : public SceneRun {
  public:
   explicit Watched(const std::string& name, const std::vector<std::string>& overrides = {})
-      : SceneRun("contact/" + name + ".toml", overrides),
-        referee_(std::make_shared<const Model>(model())) {
+      : SceneRun("contact/" + name + ".toml", overrides), referee_(std::make_shared<const Model>(model())) {
     EXPECT_EQ(referee_.crossings(now()), 0U) << "at the start";
   }
 

@@ -1,7 +1,7 @@
-// Exact contact from outside: `muslin run --set solver.effort=exact` takes the scenes of contact through their
-// first touches with steps of up to 1/48 s, solves every step to the tolerance, and after none of them the
-// exact referee finds a crossing. That the scenes need contact shows in the same runs without it, which do
-// cross; that the error tells how well steps are solved shows in drafts, which leave more.
+// Exact contact from outside: `muslin run --set solver.effort=exact` takes the scenes of contact through
+// their first touches with steps of up to 1/48 s, solves every step to the tolerance, and after none of them
+// the exact referee finds a crossing. That the scenes need contact shows in the same runs without it, which
+// do cross; that the error tells how well steps are solved shows in drafts, which leave more.
 #include <algorithm>
 #include <cmath>
 #include <ostream>

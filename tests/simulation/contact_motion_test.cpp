@@ -158,8 +158,8 @@ TEST(ContactMotion, TangledSheetsSeparateForGood) {
   EXPECT_LT(simulation.state().positions[60].y(), -0.005);
 }
 
-/// Cloth that falls on a ball: the balance changes by the work of what is left out of balance, which is next to
-/// nothing where steps are solved exactly.
+/// Cloth that falls on a ball: the balance changes by the work of what is left out of balance, which is next
+/// to nothing where steps are solved exactly.
 TEST(ContactMotion, BalanceChangesByTheWorkOfTheResiduals) {
   for (const double tolerance : {0.01, 1e-6}) {
     test::ContactScene scene;

@@ -13,7 +13,8 @@ namespace muslin {
 namespace {
 
 TEST(ModelParts, RigidBodiesHaveTheSizeOfTheLargestMovingBody) {
-  const std::string ball = "[[collider]]\nshape = 'sphere'\nradius = 0.1\ncenter = [0, 3, 0]\ndensity = 500\n",
+  const std::string ball =
+                        "[[collider]]\nshape = 'sphere'\nradius = 0.1\ncenter = [0, 3, 0]\ndensity = 500\n",
                     box = "[[collider]]\nshape = 'box'\nsize = [2, 2, 2]\ndensity = 500\n",
                     table = "[[collider]]\nshape = 'box'\nsize = [20, 1, 20]\ncenter = [0, -3, 0]\n";
   const auto sizes_of = [](const std::string& text) {

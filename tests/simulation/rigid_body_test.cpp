@@ -104,8 +104,8 @@ double slid(double friction) {
       std::to_string(start.x()) + ", " + std::to_string(start.y()) + ", 0]\n";
   const std::string slope = "[[collider]]\nshape = 'plane'\nnormal = [" + std::to_string(normal.x()) + ", " +
                             std::to_string(normal.y()) + ", 0]\n";
-  Simulation simulation(build(box + slope + gravity + "[contact]\nfriction = " +
-                              std::to_string(friction) + "\n[solver]\ntolerance = 1e-5\n"));
+  Simulation simulation(build(box + slope + gravity + "[contact]\nfriction = " + std::to_string(friction) +
+                              "\n[solver]\ntolerance = 1e-5\n"));
   const Vec3 before = centre(simulation);
   for (int frame = 0; frame < 12; ++frame) simulation.advance();
   return (centre(simulation) - before).dot(along);

@@ -112,8 +112,7 @@ TEST(Scratch, DoesNotAffectALattice) {
 TEST(Scratch, DoesNotAffectAShellInContact) {
   for (const Effort effort : {Effort::draft, Effort::normal, Effort::exact})
     for (const Integrator integrator : {Integrator::implicit_euler, Integrator::bdf2}) {
-      SCOPED_TRACE(name_of(effort_names(), effort) + " " +
-                   std::to_string(static_cast<int>(integrator)));
+      SCOPED_TRACE(name_of(effort_names(), effort) + " " + std::to_string(static_cast<int>(integrator)));
       expect_no_use_of_scratch(draped({effort, integrator}), 20);
     }
 }

@@ -19,8 +19,8 @@
 namespace muslin {
 namespace {
 
-/// Two boxes of springs that turn, stretch and fly, one a thousand times as heavy, at the end of a step that was
-/// solved loosely.
+/// Two boxes of springs that turn, stretch and fly, one a thousand times as heavy, at the end of a step that
+/// was solved loosely.
 class LooseStep : public testing::Test {
  protected:
   void SetUp() override {
@@ -42,7 +42,9 @@ class LooseStep : public testing::Test {
     problem_.targets = from_;
     problem_.parts = parts_;
     for (const auto& potential : potentials_) problem_.potentials.push_back(potential.get());
-    for (const Vec3& p : from_) prediction_.push_back(p + dt_ * (Vec3(1, 2, 3) + Vec3(4, -5, 6).cross(p) + 20 * Vec3(p.x(), -p.y(), 0)));
+    for (const Vec3& p : from_)
+      prediction_.push_back(p +
+                            dt_ * (Vec3(1, 2, 3) + Vec3(4, -5, 6).cross(p) + 20 * Vec3(p.x(), -p.y(), 0)));
     function_.emplace(problem_, prediction_, dt_);
     x_ = test::sum(prediction_, 1, test::random_vectors(from_.size(), 3e-4, 2));
   }

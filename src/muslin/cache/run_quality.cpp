@@ -36,7 +36,8 @@ std::string held_back_text(const RunQuality& quality) {
 std::string crossings_text(const RunQuality& quality) {
   const int pairs = quality.crossings_at_end;
   return fmt::format("{} of triangles still {} at the end; more frames may part them",
-                     pairs == 1 ? "1 pair" : fmt::format("{} pairs", pairs), pairs == 1 ? "crosses" : "cross");
+                     pairs == 1 ? "1 pair" : fmt::format("{} pairs", pairs),
+                     pairs == 1 ? "crosses" : "cross");
 }
 
 std::string overstretched_text(const RunQuality::Overstretched& shell) {

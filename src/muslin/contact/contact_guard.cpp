@@ -261,8 +261,8 @@ void ContactGuard::limit(ConstVectors q, Vectors d, std::span<const int> groups)
     };
     const int a = group_of(0), b = group_of(static_cast<std::size_t>(first_feature_size(pairs[i].kind)));
     if (a == b) continue;
-    const double way = (a < 0 ? 0 : moves[static_cast<std::size_t>(a)]) +
-                       (b < 0 ? 0 : moves[static_cast<std::size_t>(b)]);
+    const double way =
+        (a < 0 ? 0 : moves[static_cast<std::size_t>(a)]) + (b < 0 ? 0 : moves[static_cast<std::size_t>(b)]);
     const auto gap = [&] { return distances_[i].distance - pairs[i].thickness; };
     if (way <= safe_share * gap()) continue;
     distances_.find(i);

@@ -236,7 +236,9 @@ void ContactPotential::add_tilt(const MergedContact& contact, ConstVectors x,
   if (contact.points[3] < 0 || contact.first_size != 1 || !(contact.slope < 0) ||
       !surface_->is_round(contact.points[0]))
     return;
-  const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(contact.points[k])]; };
+  const auto corner = [&](std::size_t k) -> const Vec3& {
+    return x[static_cast<std::size_t>(contact.points[k])];
+  };
   const Vec3 u = corner(2) - corner(1), v = corner(3) - corner(1);
   const double uu = u.squaredNorm(), along = u.dot(v) / uu, vv = v.squaredNorm() - along * along * uu;
   const double stiffness = -contact.slope * contact.distance;

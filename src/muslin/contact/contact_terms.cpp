@@ -70,8 +70,9 @@ double range_of(const ContactSurface& surface, const ContactPair& pair, ConstVec
   double longest = 0;
   for (std::size_t i = begin; i < end; ++i)
     for (std::size_t j = begin; j < i; ++j)
-      longest = std::max(longest, (x[static_cast<std::size_t>(pair.points[i])] -
-                                   x[static_cast<std::size_t>(pair.points[j])]).squaredNorm());
+      longest = std::max(
+          longest, (x[static_cast<std::size_t>(pair.points[i])] - x[static_cast<std::size_t>(pair.points[j])])
+                       .squaredNorm());
   const double sagitta = longest / (8 * pair.thickness);
   if (!(sagitta < round_most * pair.range)) return pair.range;
   return sagitta < round_sagitta * pair.range ? 0 : round_range * pair.range;

@@ -167,7 +167,8 @@ struct StepLimiter::Work {
     const bool b_yields = !is_prescribed(pair.points[static_cast<std::size_t>(size_a)]);
     const bool pushes = (!a_yields && approach_a > 0) || (!b_yields && approach_b > 0);
     const double gap = before - pair.thickness;
-    const double share = std::max(pushes ? kept_before_pushing : kept_deflected, kept_more * limits.kept_share);
+    const double share =
+        std::max(pushes ? kept_before_pushing : kept_deflected, kept_more * limits.kept_share);
     const double kept = std::max(kept_floors * limits.gap_floor, share * std::min(gap, pair.range));
     const double slack = std::max(0.0, gap - kept);
     if (approach_a + approach_b <= slack) return;

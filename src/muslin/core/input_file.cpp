@@ -31,13 +31,14 @@ std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes
   // Non-blocking, since opening a pipe without a writer would wait forever.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.number < 0) throw system_error(path, "read", errno);
-  struct stat status {};
+  struct stat status{};
   if (::fstat(file.number, &status) != 0) throw system_error(path, "read", errno);
   if (S_ISDIR(status.st_mode)) throw refuse("is a folder", "name a file in it");
   if (!S_ISREG(status.st_mode)) throw refuse("is not a regular file", "copy the data to a file first");
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (size > max_bytes) {
-    throw refuse("is larger than " + std::to_string(max_bytes >> 20) + " MiB", "check that it is the right file");
+    throw refuse("is larger than " + std::to_string(max_bytes >> 20) + " MiB",
+                 "check that it is the right file");
   }
   std::string bytes;
   try {

@@ -12,7 +12,8 @@ constexpr std::size_t volume_grain = 512;
 using Corners = std::array<Vec3, 8>;
 
 /// Corners of the faces, counter-clockwise from outside.
-constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                             {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
 /// Twelve times the gradient, of one face a, b, c, d: the mean of its two cuts into triangles. `cross(i, j)`
 /// stands for the product of two corners, or for its change.

@@ -75,8 +75,7 @@ std::string to_obj(const Mesh& mesh, ConstVectors positions) {
   text.reserve(60 * positions.size() + 8 * mesh.face_vertices.size());
   if (!mesh.name.empty()) {
     std::string name = mesh.name;
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    std::replace_if(name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     text += "o " + name;
     end_names(text);
   }

@@ -61,9 +61,8 @@ void connect_voxels(Lattice& lattice) {
   parallel_for(rows.size(), connect_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       std::int64_t at = first[r];
-      for_each_vertex(voxels, rows[r].first, rows[r].second, [&](int x) {
-        lattice.vertices[at++] = {x, rows[r].first, rows[r].second};
-      });
+      for_each_vertex(voxels, rows[r].first, rows[r].second,
+                      [&](int x) { lattice.vertices[at++] = {x, rows[r].first, rows[r].second}; });
     }
   });
 

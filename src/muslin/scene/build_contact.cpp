@@ -21,7 +21,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double size_share = 1.0 / 500, edge_share = 0.2;  // of d̂
 /// With the least stiffness this share of its points carries the body's weight at half the range.
 constexpr double carrying_share = 0.1, gravity = 9.81;
-constexpr double floor_share = 0.005;       // of the gap floor, in d̂
+constexpr double floor_share = 0.005;  // of the gap floor, in d̂
 /// Bodies at rest have a gap of a little less than d̂. Below this share of it contact pushes them apart.
 constexpr double pressed_share = 0.9;
 

@@ -24,11 +24,7 @@ constexpr int patient_halvings = 4;
 class Advance {
  public:
   Advance(const Model& model, const Terms& terms, RunState& state, Scratch& scratch)
-      : model_(model),
-        terms_(terms),
-        state_(state),
-        scratch_(scratch),
-        guard_(scratch.guard(model, state)) {}
+      : model_(model), terms_(terms), state_(state), scratch_(scratch), guard_(scratch.guard(model, state)) {}
 
   StepReport by(double length, int halvings = 0) {
     const State before = state_.motion;
@@ -41,8 +37,15 @@ class Advance {
 
     const std::vector<double> accelerations =
         driving_accelerations(model_, terms_, loads, before.positions, scratch_);
-    StepProblem problem{scratch_.masses, {}, scratch_.fixed, scratch_.targets, guard_, model_.rest_positions,
-                        scratch_.parts.of_vertex, accelerations, scratch_.parts.edges};
+    StepProblem problem{scratch_.masses,
+                        {},
+                        scratch_.fixed,
+                        scratch_.targets,
+                        guard_,
+                        model_.rest_positions,
+                        scratch_.parts.of_vertex,
+                        accelerations,
+                        scratch_.parts.edges};
     problem.in_double = halvings >= patience();
     for (const PotentialTerm& term : terms_.potentials) problem.potentials.push_back(term.potential.get());
     for (const auto& load : loads)
@@ -125,7 +128,9 @@ std::vector<double> driving_accelerations(const Model& model, const Terms& terms
                                           std::span<const std::unique_ptr<Potential>> loads,
                                           ConstVectors positions, const Scratch& scratch) {
   std::vector<Vec3> force(positions.size(), Vec3::Zero());
-  const auto drives = [](EnergyRole role) { return role == EnergyRole::potential || role == EnergyRole::work; };
+  const auto drives = [](EnergyRole role) {
+    return role == EnergyRole::potential || role == EnergyRole::work;
+  };
   for (const PotentialTerm& term : terms.potentials)
     if (drives(term.role)) term.potential->add_gradient(positions, force);
   for (std::size_t i = 0; i < loads.size(); ++i)

@@ -30,7 +30,8 @@ double act_in(const SolvedStep& step, const ActingPotential& act, ConstVectors d
   const bool by_value = is_stored(act.role) && !act.after;
   if (is_implicit(step.integrator) && by_value) return potential.add_gradient_and_value(after, g);
   potential.add_gradient(is_implicit(step.integrator) ? after : before, g);
-  if (step.integrator == Integrator::linearly_implicit_euler) potential.add_hessian_product(before, displacement, g);
+  if (step.integrator == Integrator::linearly_implicit_euler)
+    potential.add_hessian_product(before, displacement, g);
   return by_value ? potential.value(after) : act.after.value_or(0);
 }
 

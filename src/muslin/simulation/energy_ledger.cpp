@@ -38,8 +38,7 @@ void EnergyLedger::measure(const Terms& acting, const StepContext& context, Cons
 }
 
 void EnergyLedger::enter(const Terms& acting, SolvedStep step,
-                         std::span<const std::unique_ptr<Potential>> loads,
-                         const ContactPotential* contact) {
+                         std::span<const std::unique_ptr<Potential>> loads, const ContactPotential* contact) {
   const std::vector<Vec3>&before = step.before->positions, &after = step.after->positions;
   std::vector<ActingPotential> acts;
   std::vector<std::size_t> slots;  // of the acts

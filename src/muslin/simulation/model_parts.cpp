@@ -7,8 +7,8 @@
 namespace muslin {
 namespace {
 
-/// A rigid body does not bend, so that its fall in a step matters relative to the largest moving body, not to its
-/// own size.
+/// A rigid body does not bend, so that its fall in a step matters relative to the largest moving body, not to
+/// its own size.
 void give_rigid_bodies_the_largest_size(const Model& model, ModelParts& parts) {
   double largest = 0;
   const auto part_of = [&](const Component& body) {

@@ -11,10 +11,9 @@ namespace muslin {
 
 std::vector<std::uint8_t> Simulation::checkpoint() const {
   const RunState& state = impl_->state;
-  return to_checkpoint(
-      {model_fingerprint(*impl_->model), state.frame, state.steps_done,
-       impl_->time().steps_per_frame.value_or(0)},
-      state);
+  return to_checkpoint({model_fingerprint(*impl_->model), state.frame, state.steps_done,
+                        impl_->time().steps_per_frame.value_or(0)},
+                       state);
 }
 
 void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
@@ -28,11 +27,14 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   }
   const std::int64_t steps = impl.time().steps_per_frame.value_or(0);
   if (header.steps != 0 && header.steps_per_frame != steps) {
-    const auto number = [](std::int64_t n) { return n == 0 ? std::string("\"auto\"") : fmt::format("{}", n); };
-    throw Error(ErrorKind::input,
-                fmt::format("the checkpoint lies inside a frame with steps_per_frame = {}, the scene now has {}",
-                            number(header.steps_per_frame), number(steps)),
-                "resume from the checkpoint before it");
+    const auto number = [](std::int64_t n) {
+      return n == 0 ? std::string("\"auto\"") : fmt::format("{}", n);
+    };
+    throw Error(
+        ErrorKind::input,
+        fmt::format("the checkpoint lies inside a frame with steps_per_frame = {}, the scene now has {}",
+                    number(header.steps_per_frame), number(steps)),
+        "resume from the checkpoint before it");
   }
   RunState state = from_checkpoint(bytes, model.vertex_count());
   // Which triangles cross depends on the surfaces and the option, which may have changed.

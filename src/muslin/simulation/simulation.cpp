@@ -16,8 +16,7 @@ namespace muslin {
 namespace {
 
 std::shared_ptr<const Model> not_null(std::shared_ptr<const Model> model) {
-  require(model != nullptr, "a simulation needs a model",
-          "give the one that build_model returns");
+  require(model != nullptr, "a simulation needs a model", "give the one that build_model returns");
   return model;
 }
 
@@ -49,7 +48,8 @@ double Simulation::Impl::progress() const {
 
 double Simulation::Impl::time_now() const {
   // One division of whole numbers, so that second 1 is exactly 1 however many steps lead there.
-  const double parts = time().steps_per_frame ? *time().steps_per_frame : static_cast<double>(StepControl::frame);
+  const double parts =
+      time().steps_per_frame ? *time().steps_per_frame : static_cast<double>(StepControl::frame);
   const double done = time().steps_per_frame ? state.steps_done : static_cast<double>(state.control.ticks);
   return (static_cast<double>(state.frame) * parts + done) / (time().frame_rate * parts);
 }
@@ -63,7 +63,8 @@ double Simulation::Impl::step_length(int level) const {
 int Simulation::Impl::choose_level() {
   if (time().steps_per_frame) return 0;
   scratch.prepare(*model);
-  const StepContext context = step_context(model->scene.solver.integrator, state.motion, 1 / time().frame_rate);
+  const StepContext context =
+      step_context(model->scene.solver.integrator, state.motion, 1 / time().frame_rate);
   const std::vector<double> accelerations = driving_accelerations(
       *model, terms(), terms().potentials_of_loads(context), state.motion.positions, scratch);
   return state.control.choose(scratch.parts, accelerations, scratch.masses, state.motion,

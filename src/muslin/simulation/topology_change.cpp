@@ -84,8 +84,7 @@ std::vector<int> cut_mesh(Scene& scene, const std::string& body, std::string& pa
 
 void Simulation::change_model(std::shared_ptr<const Model> model, std::span<const int> origins) {
   Impl& impl = *impl_;
-  require(model != nullptr, "a simulation needs a model",
-          "give the one that build_model returns");
+  require(model != nullptr, "a simulation needs a model", "give the one that build_model returns");
   require_origins(origins, *impl.model, *model);
   const auto energy = [&impl] {
     double sum =

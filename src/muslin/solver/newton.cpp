@@ -153,8 +153,8 @@ class Newton {
       std::swap(g_, workspace_.base);
       return;
     }
-    contact_ = &guard_->potential(x_, report_.newton_iterations < renewals ? StepGuard::Friction::anew
-                                                                          : StepGuard::Friction::kept);
+    contact_ = &guard_->potential(
+        x_, report_.newton_iterations < renewals ? StepGuard::Friction::anew : StepGuard::Friction::kept);
     with_contact_.potentials.back() = contact_;
     set_zero(g_);
     contact_value_ = contact_->add_gradient_and_value(x_, g_);
@@ -192,7 +192,8 @@ class Newton {
     pcg_.precondition(g_, there_);
     const bool good = error_.end(x_, state_.positions, g_, there_, s_, d_, length_t_);
     const double shrink = imbalance_.norm / norm;
-    forcing_ = std::clamp(std::max(0.9 * shrink * shrink, error_.wanted_forcing()), tightest_forcing, loosest());
+    forcing_ =
+        std::clamp(std::max(0.9 * shrink * shrink, error_.wanted_forcing()), tightest_forcing, loosest());
     return good ? done(true) : true;
   }
 
@@ -233,9 +234,8 @@ class Newton {
   }
 
   double limited(double share) {
-    for_each_vertex(count_, [&](std::size_t v) {
-      d_[v] = function_.held(v) ? Vec3(Vec3::Zero()) : Vec3(share * s_[v]);
-    });
+    for_each_vertex(
+        count_, [&](std::size_t v) { d_[v] = function_.held(v) ? Vec3(Vec3::Zero()) : Vec3(share * s_[v]); });
     if (guard_) guard_->limit(x_, d_);
     return dot(g_, d_);
   }
@@ -299,7 +299,7 @@ class Newton {
   int max_iterations_;
   StepProblem with_contact_;
   StepReport report_;
-  IncrementalPotential::Evaluation at_;     ///< at x, without contact
+  IncrementalPotential::Evaluation at_;        ///< at x, without contact
   IncrementalPotential::Imbalance imbalance_;  ///< at x, of everything
   const Potential* contact_ = nullptr;
   double contact_value_ = 0;
@@ -324,7 +324,8 @@ LinearReport solve_linear(const IncrementalPotential& function, ConstVectors x, 
   std::vector<Mat3> blocks(b.size());
   std::vector<Vec3> residual(b.size());
   function.diagonal_blocks(x, blocks);
-  LinearReport report = conjugate_gradient(function, x, BlockJacobi(function, blocks), b, settings, s, residual);
+  LinearReport report =
+      conjugate_gradient(function, x, BlockJacobi(function, blocks), b, settings, s, residual);
   report.iterations += wasted;
   return report;
 }
