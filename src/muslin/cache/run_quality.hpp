@@ -21,8 +21,8 @@ struct MUSLIN_API RunQuality {
   };
 
   std::int64_t steps = 0, converged_steps = 0;
-  double worst_error = 0;         ///< [m]
-  std::vector<int> frames_missed;  ///< with steps that missed their tolerance
+  double worst_error = 0;             ///< [m]
+  std::vector<int> frames_missed;     ///< with steps that missed their tolerance
   std::vector<int> frames_held_back;  ///< at whose end pins or colliders were behind their keyframes
   int max_held_back = 0;              ///< vertices, in the worst frame
   std::vector<int> frames_crossing;   ///< at whose end triangles cross

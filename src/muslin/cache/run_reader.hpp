@@ -56,8 +56,8 @@ class MUSLIN_API RunReader {
   /// True if the run has this surface of the body. Every body has a skin.
   bool has(int body, SurfaceKind surface) const;
 
-  /// Returns the surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of a
-  /// body without one.
+  /// Returns the surface at rest as it was written: polygons, UVs, groups. Errors: usage, for the contour of
+  /// a body without one.
   const Mesh& mesh(int body, SurfaceKind surface) const;
   /// Returns the vertices of that surface at a frame, in the same order [m].
   std::vector<Vec3f> points(int body, SurfaceKind surface, int frame) const;

@@ -21,9 +21,9 @@
 #include <span>
 #include <vector>
 
+#include "muslin/contact/contact_hessian.hpp"
 #include "muslin/contact/contact_terms.hpp"
 #include "muslin/contact/pair_distances.hpp"
-#include "muslin/contact/contact_hessian.hpp"
 #include "muslin/contact/surface_map.hpp"
 #include "muslin/potential/potential.hpp"
 #include "muslin/potential/stopping_time.hpp"

@@ -29,8 +29,8 @@ struct Material {
   std::string law = "springs";  ///< of what fills a lattice: springs, or a solid of energy/solid_laws.hpp
   std::optional<double> youngs_modulus;  ///< E of a solid [N/m²]
   double poisson = 0.3;                  ///< ν of a solid
-  double mass_damping = 0;           ///< Rayleigh α [1/s]
-  double stiffness_damping = 0;      ///< Rayleigh β [s]
+  double mass_damping = 0;               ///< Rayleigh α [1/s]
+  double stiffness_damping = 0;          ///< Rayleigh β [s]
   std::optional<ShellMaterial> shell;
 
   bool has_springs() const { return law == "springs"; }
@@ -42,7 +42,7 @@ struct Material {
 struct MaterialNumber {
   std::string key;
   double value = 0;
-  std::string unit;  ///< empty: none
+  std::string unit;    ///< empty: none
   bool guess = false;  ///< among the guesses of the material
 };
 /// A measured curve of a material, by its key; `unit` names the units of both numbers of a point.

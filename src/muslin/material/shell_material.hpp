@@ -17,23 +17,23 @@ struct Table;
 using MeasuredCurve = std::vector<Vec2>;
 
 struct ShellMaterial {
-  double areal_density = 0;      ///< [kg/m²]
-  double membrane_warp = 0;      ///< force per width and strain along warp [N/m]
-  double membrane_weft = 0;      ///< [N/m]
-  double membrane_shear = 0;     ///< force per width and radian [N/m]
+  double areal_density = 0;                  ///< [kg/m²]
+  double membrane_warp = 0;                  ///< force per width and strain along warp [N/m]
+  double membrane_weft = 0;                  ///< [N/m]
+  double membrane_shear = 0;                 ///< force per width and radian [N/m]
   std::optional<MeasuredCurve> warp_curve;   ///< in place of membrane_warp: (strain, force per width [N/m])
   std::optional<MeasuredCurve> weft_curve;   ///< in place of membrane_weft
   std::optional<MeasuredCurve> shear_curve;  ///< in place of membrane_shear: (angle [degrees], force [N/m])
-  double poisson = 0;            ///< of stretch and of bending, geometric mean of both directions
-  double bending_warp = 0;       ///< moment per width and curvature, bending warp [N·m]
-  double bending_weft = 0;       ///< [N·m]
-  double bending_bias = 0;       ///< at 45° between them [N·m]
+  double poisson = 0;                        ///< of stretch and of bending, geometric mean of both directions
+  double bending_warp = 0;                   ///< moment per width and curvature, bending warp [N·m]
+  double bending_weft = 0;                   ///< [N·m]
+  double bending_bias = 0;                   ///< at 45° between them [N·m]
   /// In place of bending_warp: (curvature [1/m], moment per width [N]).
   std::optional<MeasuredCurve> bending_warp_curve;
   std::optional<MeasuredCurve> bending_weft_curve;  ///< in place of bending_weft
-  double mass_damping = 0;       ///< Rayleigh α [1/s]
-  double stiffness_damping = 0;  ///< Rayleigh β of stretch and shear [s]
-  double bending_damping = 0;    ///< Rayleigh β of bending [s]
+  double mass_damping = 0;                          ///< Rayleigh α [1/s]
+  double stiffness_damping = 0;                     ///< Rayleigh β of stretch and shear [s]
+  double bending_damping = 0;                       ///< Rayleigh β of bending [s]
 };
 
 /// The table [shell] of a material file. Required, unless there is a `base` beside them, are areal_density,

@@ -39,18 +39,18 @@ struct State {
 /// of the step (equal steps). Symplectic Euler reads forces at the beginning of the step; its anchor makes (x
 /// − anchor) / dt the velocity at the beginning.
 struct StepContext {
-  double time_begin = 0;                  ///< [s]
-  double time_end = 0;                    ///< [s]
-  double dt = 0;                          ///< effective step of the integrator [s]
-  double velocity_time = 0;               ///< when (x − anchor) / dt is the velocity to second order [s]
-  double length = 0;                      ///< of the step, time_end − time_begin without its rounding [s]
-  std::vector<Vec3> anchor;               ///< #V by 3 [m]
-  std::vector<Vec3> inertial_prediction;  ///< #V by 3, end positions without forces [m]
+  double time_begin = 0;                      ///< [s]
+  double time_end = 0;                        ///< [s]
+  double dt = 0;                              ///< effective step of the integrator [s]
+  double velocity_time = 0;                   ///< when (x − anchor) / dt is the velocity to second order [s]
+  double length = 0;                          ///< of the step, time_end − time_begin without its rounding [s]
+  std::vector<Vec3> anchor;                   ///< #V by 3 [m]
+  std::vector<Vec3> inertial_prediction;      ///< #V by 3, end positions without forces [m]
   std::vector<std::uint8_t> rigidly_rotated;  ///< #V, 1 where anchor and prediction are those of a turning
                                               ///< rigid body; empty: none
-  ConstVectors positions;                 ///< #V by 3, at time_begin [m]
-  ConstVectors velocities;                ///< #V by 3, at time_begin [m/s]
-  const History* history = nullptr;       ///< of the loads, at time_begin; null: no earlier steps
+  ConstVectors positions;                     ///< #V by 3, at time_begin [m]
+  ConstVectors velocities;                    ///< #V by 3, at time_begin [m/s]
+  const History* history = nullptr;           ///< of the loads, at time_begin; null: no earlier steps
 };
 
 }  // namespace muslin

@@ -12,8 +12,8 @@
 namespace muslin {
 
 struct MovieOptions {
-  double frame_rate = 24;          ///< [1/s]
-  int quality = 18;  ///< x264's constant rate factor: 0 is lossless, 18 looks lossless, 51 is worst
+  double frame_rate = 24;  ///< [1/s]
+  int quality = 18;        ///< x264's constant rate factor: 0 is lossless, 18 looks lossless, 51 is worst
   std::string program = "ffmpeg";  ///< name or path; looked up in PATH
 };
 

@@ -29,9 +29,9 @@ struct Probe {
 struct MUSLIN_API Model {
   Scene scene;
   ComponentList bodies;  ///< the scene's bodies, its colliders, then components added by a program
-  std::vector<Vec3> rest_positions;  ///< #V by 3, all components one after the other, at the start [m]
-  std::vector<Vec3> velocities;      ///< #V by 3, at the start [m/s]; empty: at rest
-  std::vector<double> masses;        ///< #V [kg]; 0 of prescribed vertices
+  std::vector<Vec3> rest_positions;       ///< #V by 3, all components one after the other, at the start [m]
+  std::vector<Vec3> velocities;           ///< #V by 3, at the start [m/s]; empty: at rest
+  std::vector<double> masses;             ///< #V [kg]; 0 of prescribed vertices
   std::vector<PotentialTerm> potentials;  ///< over all vertices
   std::vector<LoadTerm> loads;            ///< over all vertices
   std::vector<Pin> pins;

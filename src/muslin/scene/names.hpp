@@ -6,8 +6,8 @@
 
 namespace muslin {
 
-const std::vector<std::string>& integrator_names();       ///< Integrator
-const std::vector<std::string>& effort_names();           ///< Effort
+const std::vector<std::string>& integrator_names();  ///< Integrator
+const std::vector<std::string>& effort_names();      ///< Effort
 
 template <class Enumeration>
 const std::string& name_of(const std::vector<std::string>& names, Enumeration value) {

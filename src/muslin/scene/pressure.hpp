@@ -21,9 +21,9 @@ struct Table;
 
 struct MUSLIN_API PressureSettings {
   std::string name, body;
-  KeyedNumber pressure;  ///< excess over the outside [Pa]; of a gas: at the rest volume
-  bool gas = false;      ///< a fixed amount of gas at constant temperature, not a given pressure
-  double atmosphere = 101325;                                        ///< outside, for a gas [Pa]
+  KeyedNumber pressure;        ///< excess over the outside [Pa]; of a gas: at the rest volume
+  bool gas = false;            ///< a fixed amount of gas at constant temperature, not a given pressure
+  double atmosphere = 101325;  ///< outside, for a gas [Pa]
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Place place;
 };

@@ -28,8 +28,8 @@
 namespace muslin {
 
 struct MUSLIN_API TimeSettings {
-  double duration = 2;     ///< [s]
-  double frame_rate = 24;  ///< [1/s]
+  double duration = 2;                 ///< [s]
+  double frame_rate = 24;              ///< [1/s]
   std::optional<int> steps_per_frame;  ///< none: adaptive
 
   int frames() const;  ///< last frame number; frame 0 is the start

@@ -39,7 +39,7 @@ struct Diagnostics {
   double error = 0;         ///< largest estimated error of a step of this frame, as a displacement [m]
   int crossings = 0;        ///< pairs of triangles that still cross after a tangled start
   double penetration = 0;   ///< largest depth of a crossing or inside a collider [m]
-  double wall_ms = 0;  ///< time this frame took
+  double wall_ms = 0;       ///< time this frame took
 
   double balance() const { return kinetic + elastic + potential - work + dissipated; }
 

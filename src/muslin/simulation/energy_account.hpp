@@ -19,7 +19,9 @@
 
 namespace muslin {
 
-inline bool is_stored(EnergyRole role) { return role == EnergyRole::elastic || role == EnergyRole::potential; }
+inline bool is_stored(EnergyRole role) {
+  return role == EnergyRole::elastic || role == EnergyRole::potential;
+}
 
 /// A potential of the step, with its role in the balance.
 struct ActingPotential {
@@ -46,9 +48,9 @@ struct SolvedStep {
 
 /// Energies [J] that entered or left the system during a step.
 struct EnergyFlow {
-  double work = 0;        ///< done by loads and by held vertices that moved
-  double dissipated = 0;  ///< by damping and by the integrator; < 0 if the integrator adds energy
-  double unbalanced = 0;  ///< work of the forces at free vertices that the solver left out of balance
+  double work = 0;             ///< done by loads and by held vertices that moved
+  double dissipated = 0;       ///< by damping and by the integrator; < 0 if the integrator adds energy
+  double unbalanced = 0;       ///< work of the forces at free vertices that the solver left out of balance
   std::vector<double> stored;  ///< by each of `acts` at the end; 0 for roles that store none
 };
 

@@ -22,8 +22,8 @@ struct StepControl {
   static constexpr int deepest = 12;                                 ///< a frame is halved at most this often
   static constexpr std::int64_t frame = std::int64_t{1} << deepest;  ///< in ticks
   std::int64_t ticks = 0;                                            ///< done, of the current frame
-  int level = 0;           ///< of the last step: how often the frame is halved
-  int harder = 0;          ///< levels added because steps were hard
+  int level = 0;   ///< of the last step: how often the frame is halved
+  int harder = 0;  ///< levels added because steps were hard
 
   template <class Self, class Arrays>
   static void name_arrays(Self& self, Arrays& arrays) {

@@ -50,7 +50,7 @@ class Multilevel {
     std::vector<float> added;                // Λ
     std::vector<Block3> inverse;             // of D + Λ
     std::vector<Float4> b, x, before;        // x before a sweep; the residual after one
-    BackgroundGrid grid;  // behind it
+    BackgroundGrid grid;                     // behind it
     GridMatrix coarser;
     std::vector<Float4> half;  // of the coarser matrix
   };

@@ -29,10 +29,10 @@ struct ColliderSettings {
   std::optional<Vec3> pivot;      ///< of the motion [m]; default: the middle of the shape
   std::string sequence;           ///< path of the samples that a mesh follows; empty: none
   Place sequence_place;
-  std::optional<double> frame_rate;  ///< of the samples, except of an .mdd [1/s]; default: the scene's
-  std::optional<double> start;       ///< time of the first sample [s]; default: that of the file, or 0
-  std::optional<double> density;     ///< [kg/m³]; if given, it moves dynamically
-  Vec3 velocity = Vec3::Zero();      ///< initial, with a density [m/s]
+  std::optional<double> frame_rate;      ///< of the samples, except of an .mdd [1/s]; default: the scene's
+  std::optional<double> start;           ///< time of the first sample [s]; default: that of the file, or 0
+  std::optional<double> density;         ///< [kg/m³]; if given, it moves dynamically
+  Vec3 velocity = Vec3::Zero();          ///< initial, with a density [m/s]
   Vec3 angular_velocity = Vec3::Zero();  ///< initial, with a density, about its centre of mass [degrees/s]
   bool contact = true;
   std::optional<double> friction;  ///< Coulomb's μ; default: that of the scene
