@@ -56,7 +56,7 @@ class ByVertex {
   std::size_t positions_ = 0;
 };
 
-/// The input of a test of the linear algebra: two lattices with pins, one of them with a hole, at any x, and a
+/// Input of tests of the linear algebra: two lattices with pins, one of them with a hole, at any x, and a
 /// potential that is neither couplings nor blocks.
 struct Bodies {
   explicit Bodies(double noise) {

@@ -14,7 +14,7 @@ class OwnSettings {
     const T* own = std::any_cast<T>(&value_);
     return own != nullptr ? *own : defaults;
   }
-  /// To change them; those of another type are lost.
+  /// Returns them for writing; those of another type are replaced by the defaults of T.
   template <class T>
   T& as() {
     T* own = std::any_cast<T>(&value_);
