@@ -1,5 +1,5 @@
-// CachedSurfaces puts the surfaces of a run together from its caches, as contact saw them, and examines them
-// with code that the solver does not use.
+// CachedSurfaces puts the surfaces of a run together from its caches, as contact saw them, and examines them.
+// Triangles that cross are found by contact/intersections.hpp, which shares no code with the step limiter.
 //
 // Positions come from the caches, in single precision: the report is about what was written. Their rounding,
 // 6e-8 of a coordinate, is a hundred times below the gap that contact keeps in a scene of common size.
