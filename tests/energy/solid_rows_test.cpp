@@ -16,9 +16,9 @@
 #include "muslin/energy/solid_rows_methods.hpp"
 
 namespace muslin {
-namespace {
 
-/// ψ = E ((I_C − 3)²/4 + (J − 1)²/2 + ln(I_C/3)/9).
+/// ψ = E ((I_C − 3)²/4 + (J − 1)²/2 + ln(I_C/3)/9). In an anonymous namespace GCC 12 warns falsely that its
+/// elements read what is not set.
 struct PlainLaw {
   struct Constants {
     double modulus;
@@ -46,6 +46,9 @@ struct PlainLaw {
     return static_cast<Real>(c.modulus);
   }
 };
+
+namespace {
+
 static_assert(solid_rows::HasLogarithm<NeoHookeanLaw> && !solid_rows::HasLogarithm<PlainLaw>);
 
 /// A box without its voxels at which `gap` is true.
