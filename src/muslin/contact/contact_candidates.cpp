@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -60,6 +61,19 @@ PairGeometry pair_geometry(const ContactSurface& surface, const ContactPair& pai
                               : closest_edge_edge(at(0), at(1), at(2), at(3));
   const double d = c.distance();
   return {d > 0 ? Vec3(c.difference / d) : Vec3(Vec3::Zero()), d, c.weights};
+}
+
+Vec3 visible_point(const ContactSurface& surface, const ContactPair& pair, const PairGeometry& geometry,
+                   ConstVectors x) {
+  const auto size = static_cast<std::size_t>(first_feature_size(pair.kind)),
+             count = static_cast<std::size_t>(pair.point_count());
+  const bool second_is_thinner =
+      pair.kind != PairKind::point_plane &&
+      surface.radius_of(pair.points[count - 1]) < surface.radius_of(pair.points[0]);
+  Vec3 point = Vec3::Zero();
+  for (std::size_t i = second_is_thinner ? size : 0; i < (second_is_thinner ? count : size); ++i)
+    point += std::abs(geometry.weights[i]) * x[static_cast<std::size_t>(pair.points[i])];
+  return point;
 }
 
 ContactCandidates::ContactCandidates(std::shared_ptr<const ContactSurface> surface, ConstVectors rest,

@@ -43,6 +43,11 @@ struct PairGeometry {
 };
 PairGeometry pair_geometry(const ContactSurface& surface, const ContactPair& pair, ConstVectors x);
 
+/// Returns the closest point on the feature of the thinner body [m], for messages: the centre of a ball is
+/// not visible.
+Vec3 visible_point(const ContactSurface& surface, const ContactPair& pair, const PairGeometry& geometry,
+                   ConstVectors x);
+
 class ContactCandidates {
  public:
   /// `rest` (#P by 3, [m]): features of one body that are closer at rest than thickness and range get smaller

@@ -1,8 +1,6 @@
 #include "muslin/contact/crossings.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -75,9 +73,8 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
     const PairGeometry geometry = pair_geometry(surface, pair, x);
     if (geometry.distance > pair.thickness) continue;
     Crossing c;
-    const auto last = at(pair.point_count() - 1);
     c.first_body = surface.body_of(pair.points[0]);
-    c.second_body = surface.body_of(pair.points[last]);
+    c.second_body = surface.body_of(pair.points[at(pair.point_count() - 1)]);
     c.kind = Crossing::Kind::too_close;
     if (pair.kind == PairKind::vertex_triangle) {
       c.first_triangle = owners.of_point[at(pair.first)];
@@ -89,12 +86,7 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
       if (geometry.distance < 0) c.kind = Crossing::Kind::beneath;
       c.first_triangle = owners.of_point[at(pair.first)];
     }
-    // A point on the surface of the thinner body, since the centre of a ball is not visible.
-    const std::size_t size = at(first_feature_size(pair.kind)), count = at(pair.point_count());
-    const bool second_is_thinner = pair.kind != PairKind::point_plane &&
-                                   surface.radius_of(pair.points[last]) < surface.radius_of(pair.points[0]);
-    for (std::size_t i = second_is_thinner ? size : 0; i < (second_is_thinner ? count : size); ++i)
-      c.at += std::abs(geometry.weights[i]) * x[at(pair.points[i])];
+    c.at = visible_point(surface, pair, geometry, x);
     if (pair.kind != PairKind::point_plane && c.first_triangle > c.second_triangle) {
       std::swap(c.first_triangle, c.second_triangle);
       std::swap(c.first_body, c.second_body);

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <fmt/format.h>
 
 #include "muslin/contact/contact_candidates.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/geometry/mesh.hpp"
 
 namespace muslin {
@@ -119,7 +118,7 @@ std::vector<Vec3> CachedSurfaces::points(int frame) const {
 std::vector<Crossing> CachedSurfaces::crossings(ConstVectors points) const {
   std::vector<Crossing> found = find_crossings(contact_, points);
   std::erase_if(found, [&](const Crossing& c) {
-    const auto is_round = [&](int body) { return !bodies_[static_cast<std::size_t>(body)].axis.empty(); };
+    const auto is_round = [&](int body) { return !bodies_[at(body)].axis.empty(); };
     return c.kind == Crossing::Kind::too_close && !is_round(c.first_body) && !is_round(c.second_body);
   });
   return one_of_each_pair(contact_, found);
@@ -134,18 +133,10 @@ std::optional<Gap> CachedSurfaces::smallest_gap(ConstVectors points) const {
     const PairGeometry geometry = pair_geometry(surface, pair, points);
     const double size = geometry.distance - pair.thickness;
     if (size >= (smallest ? smallest->size : contact_.distance)) continue;
-    const auto count = static_cast<std::size_t>(pair.point_count());
-    const auto size_of_first = static_cast<std::size_t>(first_feature_size(pair.kind));
-    const int first = pair.points[0], second = pair.points[count - 1];
-    const bool second_is_thinner =
-        pair.kind != PairKind::point_plane && surface.radius_of(second) < surface.radius_of(first);
-    const auto [a, b] = std::minmax({surface.body_of(first), surface.body_of(second)});
-    Gap gap{size, contact_.names[static_cast<std::size_t>(a)], contact_.names[static_cast<std::size_t>(b)],
-            Vec3::Zero()};
-    for (std::size_t i = second_is_thinner ? size_of_first : 0;
-         i < (second_is_thinner ? count : size_of_first); ++i)
-      gap.at += std::abs(geometry.weights[i]) * points[static_cast<std::size_t>(pair.points[i])];
-    smallest = gap;
+    const int last = pair.points[at(pair.point_count() - 1)];
+    const auto [a, b] = std::minmax({surface.body_of(pair.points[0]), surface.body_of(last)});
+    smallest = Gap{size, contact_.names[at(a)], contact_.names[at(b)],
+                   visible_point(surface, pair, geometry, points)};
   }
   return smallest;
 }

@@ -106,9 +106,7 @@ class Judge {
     if (!has_frames(p)) return p;
     for (const Diagnostics& row : rows()) {
       const double sum = row.balance() + row.unbalanced + row.momentum.sum() + row.max_stretch;
-      const std::vector<int>& bad = evidence_.frames_not_finite;
-      if (!std::isfinite(sum) || std::binary_search(bad.begin(), bad.end(), row.frame))
-        p.frames.push_back(row.frame);
+      if (!std::isfinite(sum) || !evidence_.is_finite(row.frame)) p.frames.push_back(row.frame);
     }
     set(p, p.frames.empty(),
         p.frames.empty() ? fmt::format("All numbers of {} are finite.", counted(rows().size(), "frame"))

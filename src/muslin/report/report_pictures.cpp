@@ -37,9 +37,6 @@ std::vector<ReportPicture> draw_report_pictures(const RunReader& run, const RunR
                                                 const Progress& progress) {
   const RunEvidence& evidence = report.evidence;
   const int frames = run.frame_count();
-  const auto is_finite = [&](int frame) {
-    return !std::binary_search(evidence.frames_not_finite.begin(), evidence.frames_not_finite.end(), frame);
-  };
   const auto time = [&](int frame) {
     return fmt::format("frame {}, {:.4g} s", frame, frame / run.frame_rate());
   };
@@ -50,7 +47,7 @@ std::vector<ReportPicture> draw_report_pictures(const RunReader& run, const RunR
   RunPictures plain(RunReader(run.directory()), options, progress_part(progress, 0, 0.2));
   const auto add = [&](RunPictures& from, int frame, const std::string& what,
                        const std::vector<Vec3>& places) {
-    if (!is_finite(frame)) return;
+    if (!evidence.is_finite(frame)) return;
     progress.at(&from == &plain ? 0.2 + 0.1 * static_cast<double>(pictures.size()) : 0.8, "drawing");
     pictures.push_back(
         {fmt::format("{}: {}", what, time(frame)), encode_png(from.draw(frame, balls(run, frame, places)))});

@@ -37,7 +37,7 @@ void read_tables(const RunReader& run, RunEvidence& evidence) {
   }
 }
 
-bool is_finite(const RunReader& run, int frame) {
+bool has_finite_points(const RunReader& run, int frame) {
   for (int body = 0; body < static_cast<int>(run.bodies().size()); ++body)
     for (const Vec3f& point : run.points(body, SurfaceKind::skin, frame))
       if (!point.allFinite()) return false;
@@ -67,7 +67,7 @@ void search(const RunReader& run, const CachedSurfaces* surfaces, const Progress
   const int frames = run.frame_count();
   for (int frame = 0; frame < frames; ++frame) {
     progress.at(static_cast<double>(frame) / frames, "looking for crossings");
-    if (!is_finite(run, frame)) {
+    if (!has_finite_points(run, frame)) {
       evidence.frames_not_finite.push_back(frame);
       continue;
     }
@@ -83,11 +83,6 @@ void search(const RunReader& run, const CachedSurfaces* surfaces, const Progress
   }
 }
 
-/// True for a frame whose positions can be examined.
-bool is_usable(const RunEvidence& evidence, int frame) {
-  return !std::binary_search(evidence.frames_not_finite.begin(), evidence.frames_not_finite.end(), frame);
-}
-
 void find_places(const RunReader& run, const CachedSurfaces* surfaces, RunEvidence& evidence) {
   const std::vector<Diagnostics>& rows = run.diagnostics();
   if (rows.empty()) return;
@@ -96,19 +91,23 @@ void find_places(const RunReader& run, const CachedSurfaces* surfaces, RunEviden
   if (std::isfinite(narrowest->min_distance) && surfaces != nullptr) {
     const int frame = static_cast<int>(narrowest - rows.begin());
     evidence.frame_of_gap = frame;
-    if (is_usable(evidence, frame)) evidence.gap = surfaces->smallest_gap(surfaces->points(frame));
+    if (evidence.is_finite(frame)) evidence.gap = surfaces->smallest_gap(surfaces->points(frame));
   }
   const auto longest = std::max_element(
       rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.max_stretch < b.max_stretch; });
   const int frame = static_cast<int>(longest - rows.begin());
   evidence.frame_of_stretch = frame;
-  if (!is_usable(evidence, frame)) return;
+  if (!evidence.is_finite(frame)) return;
   const std::optional<StretchPlace> place = find_largest_stretch(run, frame);
   if (place && std::abs(place->ratio - longest->max_stretch) <= same_stretch * longest->max_stretch)
     evidence.stretch = place;
 }
 
 }  // namespace
+
+bool RunEvidence::is_finite(int frame) const {
+  return !std::binary_search(frames_not_finite.begin(), frames_not_finite.end(), frame);
+}
 
 RunEvidence examine(const RunReader& run, const Progress& progress) {
   RunEvidence evidence;

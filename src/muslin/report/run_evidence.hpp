@@ -34,7 +34,8 @@ struct RunEvidence {
   RunQuality quality;                 ///< of all complete frames
   bool has_stretch_limits = false;
 
-  std::vector<int> frames_not_finite;  ///< in which a cached position is not a number
+  std::vector<int> frames_not_finite;  ///< in which a cached position is not a number, ascending
+  bool is_finite(int frame) const;     ///< false in these
   /// True if the caches were searched for crossings; otherwise the reason is below.
   bool searched = false;
   std::string why_not_searched;
