@@ -121,7 +121,7 @@ TEST_F(MeasuredCloth, WrongCurvesAreErrorsWithARemedy) {
   EXPECT_THAT(message(weight + "warp_curve = [[0.1, 20], [0.1, 30]]"),
               HasSubstr("`warp_curve` goes from [0.1, 20] to [0.1, 30]"));
   EXPECT_THAT(message(weight + "warp_curve = [[0.1, 20], [0.2, 19]]"),
-              HasSubstr("let both numbers ascend from 0"));
+              HasSubstr("let both numbers ascend: the first by"));
   EXPECT_THAT(message(weight + "warp_curve = [[5, 20], [50, 30]]"), HasSubstr("is 50; give a number"));
   EXPECT_THAT(message(weight + warp + "shear_curve = [[85, 2]]"), HasSubstr("is 85; give a number"));
   EXPECT_THAT(message(weight + "warp_curve = [[0.1, 20], [0.5, 21]]"),

@@ -35,6 +35,9 @@ void read_guesses(const schema::Key& key, const TomlTable& file, Material& mater
        {std::pair{"lattice.", &lattice_material_table()}, std::pair{"shell.", &shell_material_table()}})
     for (const std::string& number : table->names()) known.push_back(name + number);
   for (const TomlValue& item : *file.array(key.name, "keys such as [\"shell.poisson\"]")) {
+    if (item.type != TomlValue::Type::string)
+      throw file.error(key.name, "`guesses` has an item that is not a text",
+                       "give keys such as \"shell.poisson\"");
     if (std::find(known.begin(), known.end(), item.string) == known.end())
       throw file.error(key.name, "`" + item.string + "` in `guesses` is not a number of a material",
                        name_advice(item.string, known));

@@ -1,5 +1,6 @@
 #include "muslin/material/shell_material.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr Range sheet_modulus{0, 1e12, false};
 constexpr Range sheet_damping{0, 1e6, false};
+constexpr double remedy_margin = 1e-3;  // covers the rounding of numbers in messages
 
 /// Returns the bias rigidity of an orthotropic plate whose twisting rigidity is the geometric mean of the two
 /// bending ones.
@@ -68,7 +70,7 @@ void check_bias(const ShellMaterial& m, const schema::Subject& subject) {
           "with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m and a Poisson ratio of {:.4g} the sheet "
           "would twist by itself",
           m.bending_bias, warp, weft, m.poisson),
-      fmt::format("give `bending_bias` at least {:.4g}", lowest));
+      fmt::format("give `bending_bias` at least {:.4g}", lowest * (1 + remedy_margin)));
 }
 
 void check_curves(const ShellMaterial& m, const schema::Subject& subject) {
@@ -79,12 +81,12 @@ void check_curves(const ShellMaterial& m, const schema::Subject& subject) {
       throw subject.error(key, fmt::format("`{}` is unstable: {}", key, *problem),
                           "leave out points where the cloth yields or tears");
   }
-  if (!has_curves(m)) return;
+  if (!m.warp_curve && !m.weft_curve) return;
   const double highest = highest_poisson(stress_of(m));
   if (m.poisson >= 0 && m.poisson <= highest) return;
-  throw subject.error("poisson",
-                      fmt::format("curves with a Poisson ratio of {:.4g} make an unstable sheet", m.poisson),
-                      fmt::format("give `poisson` from 0 to {:.4g}", highest));
+  throw subject.error(
+      "poisson", fmt::format("curves with a Poisson ratio of {:.4g} make an unstable sheet", m.poisson),
+      fmt::format("give `poisson` from 0 to {:.4g}", std::min(0.99, highest * (1 - remedy_margin))));
 }
 
 /// A curve in place of a modulus.

@@ -116,7 +116,7 @@ class Tracer {
     }
     if (file_ && file_->has(table_, key))
       return file_->in_library ? NumberOrigin::library : NumberOrigin::file;
-    if (by_path_ && !file_) return NumberOrigin::file;
+    if (by_path_ && !file_) return NumberOrigin::unread;
     return other_material && !file_ ? NumberOrigin::changed : NumberOrigin::derived;
   }
 
@@ -172,6 +172,8 @@ const char* name_of(NumberOrigin origin) {
       return "from the material library";
     case NumberOrigin::file:
       return "from the material file";
+    case NumberOrigin::unread:
+      return "from a material file that was not found again, or derived";
     case NumberOrigin::scene:
       return "from the scene file";
     case NumberOrigin::changed:

@@ -12,7 +12,8 @@ namespace muslin {
 enum class NumberOrigin {
   library,  ///< a material that comes with muslin
   file,     ///< a material file of the user
-  scene,    ///< written in the scene file
+  unread,  ///< a material file that cannot be read from the run's folder, or derived; its guesses are unknown
+  scene,   ///< written in the scene file
   changed,  ///< not set in the scene file but by --set or by a program
   derived,  ///< follows from other numbers, or a default
 };

@@ -197,7 +197,7 @@ class Judge {
         "{} of {} triangles", counted(rows().size() - evidence_.frames_not_finite.size(), "frame"),
         evidence_.triangles_searched);
     if (p.frames.empty())
-      set(p, true, fmt::format("No crossing in {}, every pair tested.", searched));
+      set(p, true, fmt::format("No crossing in {}, every pair that may touch tested.", searched));
     else
       set(p, false,
           fmt::format("Surfaces cross in {}, in up to {} at once: {}.{}", in_frames(p),
@@ -208,13 +208,17 @@ class Judge {
     return p;
   }
 
+  /// Without contact, gaps and depths are not measured.
+  bool has_contact(Promise& p) const {
+    if (!evidence_.summary.contains("contact") || !evidence_.summary["contact"].is_null()) return true;
+    p.finding = "Not measured: nothing can touch in this scene.";
+    return false;
+  }
+
   Promise gap() const {
     Promise p = promise("gaps_stay_open", "Gaps stay open", "every gap, thickness taken off, is above 0");
     if (!has_frames(p)) return p;
-    if (evidence_.summary.contains("contact") && evidence_.summary["contact"].is_null()) {
-      p.finding = "Not measured: the scene has no contact.";
-      return p;
-    }
+    if (!has_contact(p)) return p;
     double smallest = std::numeric_limits<double>::infinity();
     int frame = 0;
     for (const Diagnostics& row : rows())
@@ -235,6 +239,7 @@ class Judge {
   Promise penetration() const {
     Promise p = promise("nothing_penetrates", "Nothing is inside a collider", "a depth of 0");
     if (!has_step_columns(p)) return p;
+    if (!has_contact(p)) return p;
     double deepest = 0;
     for (const Diagnostics& row : rows()) deepest = std::max(deepest, row.penetration);
     set_frames(p, [](const Diagnostics& row) { return row.penetration > 0; });
@@ -242,7 +247,7 @@ class Judge {
     p.allowed = 0;
     p.unit = "m";
     set(p, p.frames.empty(),
-        p.frames.empty() ? std::string("The solver counted no penetration.")
+        p.frames.empty() ? std::string("The solver counted no penetration of bodies that may touch.")
                          : fmt::format("Up to {} deep, in {}.", quantity(deepest, "m"), in_frames(p)));
     return p;
   }

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::int64_t largest_whole = std::numeric_limits<std::int64_t>::max();
 
-constexpr double closest_points = 1e-6;  // of a curve
+constexpr double closest_points = 1e-6;   // of a curve
+constexpr double smallest_force = 1e-50;  // of a curve; products of slopes stay above underflow
 
 std::int64_t lowest(const Key& key) {
   return std::isfinite(key.range.min) ? static_cast<std::int64_t>(key.range.min) : -largest_whole;
@@ -100,12 +101,14 @@ void CurveCodec::check(const Key& key, const Curve& curve, const Subject& subjec
   for (std::size_t i = has_origin ? 1 : 0; i < curve.size(); ++i) {
     const Vec2& point = curve[i];
     const bool ascends = point[0] >= before[0] + closest_points && point[1] > before[1];
-    if (!ascends || !fits(point[0], key.range) || !fits(point[1], {0, largest_component, false}))
-      throw subject.error(key.name,
-                          fmt::format("`{}` goes from [{}, {}] to [{}, {}]", key.name, before[0], before[1],
-                                      point[0], point[1]),
-                          fmt::format("let both numbers ascend from 0, the first by {} or more, up to {}",
-                                      closest_points, key.range.max));
+    if (!ascends || !fits(point[0], key.range) || !fits(point[1], {smallest_force, largest_component, false}))
+      throw subject.error(
+          key.name,
+          fmt::format("`{}` goes from [{}, {}] to [{}, {}]", key.name, before[0], before[1], point[0],
+                      point[1]),
+          fmt::format("begin at [0, 0] or leave it out, and let both numbers ascend: the first by {} or "
+                      "more, up to {}, the second from {} to {}",
+                      closest_points, key.range.max, smallest_force, largest_component));
     before = point;
   }
 }
