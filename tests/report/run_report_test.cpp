@@ -185,6 +185,7 @@ TEST(RunReport, HoldsMomentumAgainstTheImpulseOfGravity) {
   EXPECT_LT(*momentum.measured, 1e-6);
   EXPECT_THAT(promise(fall, "nothing_crosses").finding, HasSubstr("no contact"));
   EXPECT_EQ(promise(fall, "gaps_stay_open").verdict, Verdict::not_measured);
+  EXPECT_EQ(promise(fall, "nothing_penetrates").verdict, Verdict::not_measured);
   test::replace_in(run / "stats.json", "\"mass\": 0.05", "\"mass\": 0.06");
   EXPECT_EQ(promise(report_on(run), "momentum_is_consistent").verdict, Verdict::broken);
   // Nothing moves a sheet without gravity.

@@ -130,6 +130,21 @@ TEST_F(MeasuredCloth, WrongCurvesAreErrorsWithARemedy) {
               HasSubstr("curves with a Poisson ratio of -0.1 make an unstable sheet; give `poisson` from 0"));
   EXPECT_THAT(message(weight + "poisson = 0.4, warp_curve = [[0.05, 20], [0.2, 24], [0.3, 27]]"),
               HasSubstr("give `poisson` from 0 to 0."));
+  EXPECT_THAT(message(weight + warp + "bending_weft_curve = [[5, 1e-150]]"),
+              HasSubstr("`bending_weft_curve` goes from [0, 0] to [5, 1e-150]"));
+}
+
+TEST_F(MeasuredCloth, RemediesHoldWhenUsed) {
+  const std::string curve = "warp_curve = [[0.0819, 7.5931], [0.1568, 8.4401]]";
+  const std::string refusal = message(weight + curve + ", poisson = 0.487");
+  const std::string words = "give `poisson` from 0 to ";
+  ASSERT_THAT(refusal, HasSubstr(words));
+  EXPECT_EQ(message(weight + curve + ", poisson = " + refusal.substr(refusal.find(words) + words.size())),
+            "no error");
+}
+
+TEST_F(MeasuredCloth, CurveOfShearDoesNotLimitPoissonsRatio) {
+  EXPECT_EQ(message(weight + "membrane_warp = 1000, poisson = -0.2, shear_curve = [[5, 2]]"), "no error");
 }
 
 TEST_F(MeasuredCloth, AProgramsCurvesAreCheckedLikewise) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,13 +16,22 @@ namespace {
 
 constexpr Range sheet_modulus{0, 1e12, false};
 constexpr Range sheet_damping{0, 1e6, false};
-constexpr double remedy_margin = 1e-3;  // covers the rounding of numbers in messages
 
 /// Returns the bias rigidity of an orthotropic plate whose twisting rigidity is the geometric mean of the two
 /// bending ones.
 double bias_between(double warp, double weft) {
   const double sum = std::sqrt(warp) + std::sqrt(weft);
   return sum * sum / 4;
+}
+
+/// Return a number in four digits, rounded so that the message's remedy holds.
+std::string at_least(double least) {
+  const std::string nearest = fmt::format("{:.4g}", least);
+  return std::stod(nearest) >= least ? nearest : fmt::format("{:.4g}", least * (1 + 1e-3));
+}
+std::string at_most(double most) {
+  const std::string nearest = fmt::format("{:.4g}", most);
+  return std::stod(nearest) <= most ? nearest : fmt::format("{:.4g}", most * (1 - 1e-3));
 }
 
 /// Below it the plate would not resist twisting (energy/hinge_coupling.hpp).
@@ -70,7 +80,7 @@ void check_bias(const ShellMaterial& m, const schema::Subject& subject) {
           "with {:.4g} N·m at 45° between {:.4g} and {:.4g} N·m and a Poisson ratio of {:.4g} the sheet "
           "would twist by itself",
           m.bending_bias, warp, weft, m.poisson),
-      fmt::format("give `bending_bias` at least {:.4g}", lowest * (1 + remedy_margin)));
+      "give `bending_bias` at least " + at_least(lowest));
 }
 
 void check_curves(const ShellMaterial& m, const schema::Subject& subject) {
@@ -84,9 +94,9 @@ void check_curves(const ShellMaterial& m, const schema::Subject& subject) {
   if (!m.warp_curve && !m.weft_curve) return;
   const double highest = highest_poisson(stress_of(m));
   if (m.poisson >= 0 && m.poisson <= highest) return;
-  throw subject.error(
-      "poisson", fmt::format("curves with a Poisson ratio of {:.4g} make an unstable sheet", m.poisson),
-      fmt::format("give `poisson` from 0 to {:.4g}", std::min(0.99, highest * (1 - remedy_margin))));
+  throw subject.error("poisson",
+                      fmt::format("curves with a Poisson ratio of {:.4g} make an unstable sheet", m.poisson),
+                      "give `poisson` from 0 to " + at_most(std::min(0.99, highest)));
 }
 
 /// A curve in place of a modulus.
