@@ -20,6 +20,9 @@ if(MUSLIN_SANITIZE)
   target_compile_options(muslin_flags INTERFACE -fsanitize=${MUSLIN_SANITIZE} -fno-sanitize-recover=all
                          -fno-omit-frame-pointer -g1)
   target_link_options(muslin_flags INTERFACE -fsanitize=${MUSLIN_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    target_compile_options(muslin_flags INTERFACE -Wno-pass-failed)  # checks keep some loops from being vectorised
+  endif()
 endif()
 if(NOT CMAKE_BUILD_TYPE AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
