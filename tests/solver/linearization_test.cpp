@@ -87,7 +87,7 @@ TEST(Linearization, StandInLeavesTheSystemAsItIsAndMakesItsBlocksCouplings) {
     h.reset(masses, fixed, 1);
     const PairBlocks blocks = h.pair_blocks(pattern, 0);
     for (const auto& [a, b] : pairs) {
-      // What is not symmetric cancels in the diagonal blocks along the chain.
+      // Antisymmetric parts cancel in the diagonal blocks along the chain.
       const double turn = b == a + 1 ? 0.7 : -0.35;
       for (int c = 0; c < 3; ++c) {
         for (int r = 0; r < 3; ++r) {

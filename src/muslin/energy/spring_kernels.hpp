@@ -49,7 +49,7 @@ struct SpringTargets {
 
 /// Energies ½ k (|z| − r)², z = b − a.
 void add_spring_energies(const SpringType& type, int n, Columns a, Columns b, double* w);
-/// The same, and the forces k (1 − r/|z|) z.
+/// Adds these energies and the forces k (1 − r/|z|) z.
 void add_spring_forces(const SpringType& type, int n, Columns a, Columns b, const SpringTargets& to,
                        double* w);
 /// ∂²W/∂z² d, d = p_b − p_a.

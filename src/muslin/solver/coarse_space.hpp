@@ -55,8 +55,8 @@ class CoarseSpace {
   BackgroundGrid::Point point(std::size_t position) const {
     return held_[position] != 0 ? BackgroundGrid::Point{} : grid_.point(position);
   }
-  /// For the couplings of one kind in one cell: the mean of δ_k δ_l (k ≤ l, in the order of add_weighted).
-  /// The same for the masses of a cell's vertices.
+  /// A bundle holds the mean of δ_k δ_l over the couplings of one kind in one cell, or over the masses of a
+  /// cell's vertices.
   using Square = std::array<float, 36>;  // for nodes k ≤ l of a cell, as add_weighted has them
   struct Bundle {
     int cell = 0;
