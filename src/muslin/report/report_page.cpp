@@ -362,7 +362,7 @@ class Page {
         "<footer>Examined with muslin {}.{} This page holds everything it shows.</footer>", version(),
         evidence_.searched
             ? " Crossings were searched anew in the written surfaces, by exact arithmetic that shares "
-              "no code with the solver."
+              "no code with the step limiter of contact."
             : "");
   }
 
