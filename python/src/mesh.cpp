@@ -44,7 +44,7 @@ void add_faces(Mesh& mesh, nb::handle faces) {
 
 void add_uvs(Mesh& mesh, const std::optional<ArrayLike>& uvs, const std::optional<ArrayLike>& corner_uvs) {
   if (!uvs) {
-    if (corner_uvs) throw Error(ErrorKind::usage, "corner_uvs stands without uvs", "give both");
+    if (corner_uvs) throw Error(ErrorKind::usage, "corner_uvs needs uvs", "give both");
     return;
   }
   mesh.uvs = as_plane_vectors(*uvs, "uvs");

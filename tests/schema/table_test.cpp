@@ -130,7 +130,7 @@ TEST(Schema, MistakesInAFileAreErrorsAtTheirPlace) {
   EXPECT_THAT(message("[[wheel]]\nstiffness = 2\n"), HasSubstr("unknown key `stiffness`"));
   EXPECT_THAT(message("[[wheel]]\ndrive = 'spring'\n"), HasSubstr("has no `stiffness`; add `stiffness = …`"));
   EXPECT_THAT(message("[[wheel]]\ndrive = 'sprin'\n"), HasSubstr("did you mean `spring`?"));
-  EXPECT_THAT(message("[[wheel]]\nwidth = 1\n"), HasSubstr("`width` stands without `radius`; give both"));
+  EXPECT_THAT(message("[[wheel]]\nwidth = 1\n"), HasSubstr("`width` needs `radius`; give both"));
   EXPECT_THAT(message("[[wheel]]\nradius = 1\nwidth = 2\n"), HasSubstr("cart.toml:3:9: it is a roller"));
   EXPECT_THAT(message("[[wheel]]\nbrake = true\nframes = [{ time = 0, value = [0, 0, 0] }]\n"),
               HasSubstr("`brake` stands beside `frames`; keep one of them"));

@@ -41,7 +41,7 @@ schema::Table declare_pressure() {
        schema::number("atmosphere", &PressureSettings::atmosphere)
            .unit("Pa")
            .range({0, largest_pressure, false})
-           .needs("gas", "only a gas asks for the pressure outside; take it out")
+           .needs("gas", "only a gas asks for the pressure outside; remove it")
            .means("pressure outside, for a gas")});
   for (schema::Key& key :
        window_keys(&PressureSettings::from, &PressureSettings::until, "time when it begins to act",

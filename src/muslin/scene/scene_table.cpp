@@ -144,7 +144,7 @@ void warn_of_unused(const TomlTable& table, Scene& scene) {
   const auto warn = [&](const char* key, const std::string& effect, const std::string& remedy) {
     if (table.has(key))
       scene.warnings.push_back(
-          fmt::format("[solver] `{}` has no effect on {}: take it out, {}", key, effect, remedy));
+          fmt::format("[solver] `{}` has no effect on {}: remove it, {}", key, effect, remedy));
   };
   if (!linear) warn("linear_tolerance", name, "or choose `integrator = \"linearly_implicit_euler\"`");
   if (newton) return;

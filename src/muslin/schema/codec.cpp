@@ -129,7 +129,7 @@ std::string section_title(const std::string& name, const TomlValue& value, std::
 
 const std::vector<TomlValue>& keyframe_values(const std::string& name, const TomlTable& owner) {
   const auto& items = *owner.array(name, "tables such as { time = 0, … }");
-  if (items.empty()) throw owner.error(name, fmt::format("`{}` is empty", name), "take it out or give keys");
+  if (items.empty()) throw owner.error(name, fmt::format("`{}` is empty", name), "remove it or give keys");
   return items;
 }
 

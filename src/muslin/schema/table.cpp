@@ -31,7 +31,7 @@ void check_presence(const Key& key, const TomlTable& table) {
   }
   for (const Key::Need& need : key.needs) {
     if (!table.has(need.other))
-      throw table.error(key.name, fmt::format("`{}` stands without `{}`", key.name, need.other), need.remedy);
+      throw table.error(key.name, fmt::format("`{}` needs `{}`", key.name, need.other), need.remedy);
   }
   for (const Key::Conflict& conflict : key.conflicts)
     if (table.has(conflict.other)) throw table.error(key.name, conflict.problem, conflict.remedy);
@@ -109,7 +109,7 @@ TomlTable Table::open(const TomlValue& value, const std::string& title) const {
     for (const Key& foreign : other.table().keys) {
       if (!table.has(foreign.name) || contains(known, foreign.name)) continue;
       throw table.error(foreign.name, fmt::format("`{}` is a setting of {}", foreign.name, other.plural),
-                        fmt::format("take it out, or set `{} = \"{}\"`", key.name, other.word));
+                        fmt::format("remove it, or set `{} = \"{}\"`", key.name, other.word));
     }
   }
   return table;

@@ -72,7 +72,7 @@ const schema::Table& plane_table() {
       if (!(std::abs(collider.normal.norm() - 1) <= 1e-9))
         throw subject.error("normal", "`normal` is not of length 1", "normalise it");
       if (collider.is_free())
-        throw subject.error("density", "a plane has a `density`", "take it out: planes stand still");
+        throw subject.error("density", "a plane has a `density`", "remove it: planes stand still");
     });
     return plane;
   }();
@@ -143,7 +143,7 @@ schema::Table declare_collider() {
        schema::vector("pivot", &Collider::pivot)
            .unit("m")
            .otherwise("middle of the shape; `center` of a plane")
-           .needs("keyframes", "take it out")
+           .needs("keyframes", "remove it")
            .means("point about which `rotate` of the keyframes turns, before `translate`"),
        schema::within<Collider>(
            &Collider::motion,

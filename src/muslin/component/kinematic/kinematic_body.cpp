@@ -66,13 +66,13 @@ std::vector<schema::Key> sequence_keys(ColliderSettings::Shape shape) {
           .unit("1/s")
           .range({1e-6, 1e6, false})
           .otherwise("the scene's")
-          .needs("sequence", "take it out")
+          .needs("sequence", "remove it")
           .means("frames per second of the sequence; not for an `.mdd`, which stores its own frame times"),
       schema::number("start", &Collider::start)
           .unit("s")
           .range({-1e9, 1e9, false})
           .otherwise("as the file says, or 0")
-          .needs("sequence", "take it out")
+          .needs("sequence", "remove it")
           .means("time of the first sample; the collider is static before the first and after the last "
                  "sample")};
 }
