@@ -88,6 +88,7 @@ class Coupler {
       }
       result.first.push_back(static_cast<int>(result.hinges.size()));
     }
+    result.find_uses();
     return result;
   }
 

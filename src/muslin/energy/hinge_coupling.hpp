@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "muslin/energy/plate_curvatures.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
@@ -44,14 +45,6 @@ struct HingeCoupling {
 
   /// Returns K d.
   std::vector<double> times(std::span<const double> d) const;
-};
-
-/// The curvatures κ_uu and κ_vv of triangles, against rest, as sums over hinges: those of triangle t are
-/// entries first[t] ≤ k < first[t + 1]. They are the curvatures for which K is the plate's.
-struct PlateCurvatures {
-  std::size_t hinge_count = 0;
-  std::vector<int> first, hinges;
-  std::vector<Vec2> weights;  ///< by entry [1/m per radian]
 };
 
 /// Couples the hinges of `shell`. A triangle whose vertices are all in `held` (#V, or empty) is a clamp: the

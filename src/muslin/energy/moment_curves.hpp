@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "muslin/energy/hinge_coupling.hpp"
+#include "muslin/energy/plate_curvatures.hpp"
 #include "muslin/energy/stress_curve.hpp"
 
 namespace muslin {
@@ -29,16 +29,7 @@ class MomentCurves {
                    std::span<double> moments) const;
 
  private:
-  Vec2 curvature(std::size_t triangle, std::span<const double> bent) const;
-  /// moments += Bᵀ `of_triangle`
-  void add_transposed(std::span<const Vec2> of_triangle, std::span<double> moments) const;
-
-  struct Use {
-    int triangle = 0, entry = 0;  // of a hinge in B
-  };
   PlateCurvatures curvatures_;
-  std::vector<int> first_use_;  // by hinge
-  std::vector<Use> uses_;
   std::vector<double> areas_;
   StressCurve warp_, weft_;
 };

@@ -14,60 +14,6 @@ namespace {
 // matrix takes at most a few iterations more, and linear iterations cost half (docs/notebook/bending.md).
 constexpr double stiff = 16;
 
-MUSLIN_VECTOR_CODE void deviations_of(const Batch<4>& x, const double* rest, double* out) {
-  BentHinge h;
-  bend_hinge(x, h);
-  HingeStencil::find_deviations(h, rest, out);
-}
-
-MUSLIN_VECTOR_CODE void gradients_of(const Batch<4>& x, Batch<4>& out) {
-  BentHinge h;
-  AngleGradient d;
-  bend_hinge(x, h);
-  gradient_of_angle(h, d);
-  angle_to_corners(d, out);
-}
-
-MUSLIN_VECTOR_CODE void changes_of(const Batch<4>& x, const Batch<4>& p, double* out) {
-  BentHinge h;
-  AngleGradient d;
-  Batch<4> g;
-  bend_hinge(x, h);
-  gradient_of_angle(h, d);
-  angle_to_corners(d, g);
-  for (int l = 0; l < element_lanes; ++l)
-    out[l] = dot_lanes(g[0], p[0], l) + dot_lanes(g[1], p[1], l) + dot_lanes(g[2], p[2], l) +
-             dot_lanes(g[3], p[3], l);
-}
-
-/// force = factor ∇θ
-MUSLIN_VECTOR_CODE void forces_of(const Batch<4>& x, const double* factor, Batch<4>& force) {
-  BentHinge h;
-  AngleGradient d;
-  bend_hinge(x, h);
-  gradient_of_angle(h, d);
-  angle_to_corners(d, force);
-  for (int c = 0; c < 4; ++c)
-    for (int k = 0; k < 3; ++k)
-      for (int l = 0; l < element_lanes; ++l) force[c][k][l] *= factor[l];
-}
-
-/// force = factor ∇θ + moment ∇²θ p
-MUSLIN_VECTOR_CODE void changes_of_forces(const Batch<4>& x, const double* factor, const double* moment,
-                                          const Batch<4>& p, Batch<4>& force) {
-  BentHinge h;
-  AngleGradient d;
-  Batch<4> change;
-  bend_hinge(x, h);
-  gradient_of_angle(h, d);
-  angle_to_corners(d, force);
-  change_of_angle_gradient(h, d, p, change);
-  for (int c = 0; c < 4; ++c)
-    for (int k = 0; k < 3; ++k)
-      for (int l = 0; l < element_lanes; ++l)
-        force[c][k][l] = factor[l] * force[c][k][l] + moment[l] * change[c][k][l];
-}
-
 std::shared_ptr<const FormCoupling> difference_of(const Shell& shell, const HingeCoupling& coupling) {
   auto difference = std::make_shared<FormCoupling>();
   difference->vertices = hinge_vertices(shell);
@@ -98,11 +44,9 @@ BendingModuli plate_of(const BendingCurves& c, double warp, double weft) {
 ShellBending::ShellBending(const Shell& shell, const BendingModuli& moduli,
                            std::shared_ptr<const SymmetricPattern> pattern,
                            std::span<const std::uint8_t> held)
-    : ElementEnergy(std::move(pattern)),
-      slabs_(hinge_vertices(shell), shell.vertex_count()),
-      stencil_(slabs_, shell),
+    : ElementEnergy(pattern),
+      angles_(std::make_shared<const HingeAngles>(shell, std::move(pattern))),
       coupling_(couple_hinges(shell, moduli, held)) {
-  if (this->pattern()) slots_ = slabs_.slots(*this->pattern());
   prepare_systems(shell, coupling_);
 }
 
@@ -129,36 +73,6 @@ void ShellBending::prepare_systems(const Shell& shell, const HingeCoupling& stif
     stiffness_ += stiffest.lumped[e] * std::pow(2 * shell.hinges[e].length / shell.hinges[e].area, 2);
 }
 
-void ShellBending::load(std::span<const double> of_hinge, int first, int count, double* lanes) const {
-  for (int l = 0; l < element_lanes; ++l)
-    lanes[l] = of_hinge[at(slabs_.elements()[at(first + std::min(l, count - 1))])];
-}
-
-std::vector<double> ShellBending::deviations(ConstVectors x) const {
-  std::vector<double> result(coupling_.lumped.size());
-  slabs_.for_each_owned_batch([&](int first, int count) {
-    Batch<4> corners;
-    double lanes[element_lanes];
-    slabs_.gather(first, count, x, corners);
-    deviations_of(corners, stencil_.at(first), lanes);
-    for (int l = 0; l < count; ++l) result[at(slabs_.elements()[at(first + l)])] = lanes[l];
-  });
-  return result;
-}
-
-std::vector<double> ShellBending::changes(ConstVectors x, ConstVectors p) const {
-  std::vector<double> result(coupling_.lumped.size());
-  slabs_.for_each_owned_batch([&](int first, int count) {
-    Batch<4> corners, along;
-    double lanes[element_lanes];
-    slabs_.gather(first, count, x, corners);
-    slabs_.gather(first, count, p, along);
-    changes_of(corners, along, lanes);
-    for (int l = 0; l < count; ++l) result[at(slabs_.elements()[at(first + l)])] = lanes[l];
-  });
-  return result;
-}
-
 namespace {
 
 double half_product(std::span<const double> p, std::span<const double> q) {
@@ -172,24 +86,17 @@ double half_product(std::span<const double> p, std::span<const double> q) {
 }  // namespace
 
 double ShellBending::value(ConstVectors x) const {
-  const std::vector<double> bent = deviations(x);
+  const std::vector<double> bent = angles_->deviations(x);
   const double linear = half_product(bent, coupling_.times(bent));
   return curves_ ? linear + curves_->energy(bent) : linear;
 }
 
 double ShellBending::add_gradient_and_value(ConstVectors x, Vectors g) const {
-  const std::vector<double> bent = deviations(x);
+  const std::vector<double> bent = angles_->deviations(x);
   std::vector<double> moments = coupling_.times(bent);
   double energy = half_product(bent, moments);
   if (curves_) energy += curves_->add_moments(bent, moments);
-  slabs_.for_each_batch([&](int first, int count, const Slabs::Slab& slab) {
-    Batch<4> corners, force;
-    double moment[element_lanes];
-    slabs_.gather(first, count, x, corners);
-    load(moments, first, count, moment);
-    forces_of(corners, moment, force);
-    slabs_.scatter(first, count, slab, force, g);
-  });
+  angles_->add_forces(x, moments, g);
   return energy;
 }
 
@@ -197,71 +104,23 @@ void ShellBending::add_gradient(ConstVectors x, Vectors g) const { add_gradient_
 
 void ShellBending::add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const {
   const bool exact = kind == Stiffness::exact;
-  const std::vector<double> change = changes(x, p);
-  std::vector<double> factors = coupling_.times(change), bent, moments;
-  if (exact || curves_) bent = deviations(x);
-  if (exact) moments = coupling_.times(bent);
-  if (curves_) {
-    curves_->add_changes(bent, change, factors);
-    if (exact) curves_->add_moments(bent, moments);
-  }
-  slabs_.for_each_batch([&](int first, int count, const Slabs::Slab& slab) {
-    Batch<4> corners, along, force;
-    double factor[element_lanes], moment[element_lanes];
-    slabs_.gather(first, count, x, corners);
-    load(factors, first, count, factor);
-    if (exact) {
-      slabs_.gather(first, count, p, along);
-      load(moments, first, count, moment);
-      changes_of_forces(corners, factor, moment, along, force);
-    } else {
-      forces_of(corners, factor, force);
-    }
-    slabs_.scatter(first, count, slab, force, y);
-  });
+  const std::vector<double> change = angles_->changes(x, p);
+  std::vector<double> factors = coupling_.times(change), bent;
+  if (exact || curves_) bent = angles_->deviations(x);
+  if (curves_) curves_->add_changes(bent, change, factors);
+  if (!exact) return angles_->add_forces(x, factors, y);
+  std::vector<double> moments = coupling_.times(bent);
+  if (curves_) curves_->add_moments(bent, moments);
+  angles_->add_force_changes(x, factors, moments, p, y);
 }
 
 void ShellBending::add_stiffness_blocks(Stiffness, ConstVectors x, std::span<Mat3> blocks) const {
-  slabs_.for_each_batch([&](int first, int count, const Slabs::Slab& slab) {
-    Batch<4> corners, gradient;
-    slabs_.gather(first, count, x, corners);
-    gradients_of(corners, gradient);
-    for (int l = 0; l < count; ++l) {
-      const double lumped = coupling_.lumped[at(slabs_.elements()[at(first + l)])];
-      for (int c = 0; c < 4; ++c) {
-        const int v = slabs_.vertices()[at(first + l)][at(c)];
-        if (v < slab.vertex_begin || v >= slab.vertex_end) continue;
-        const Vec3 g(gradient[c][0][l], gradient[c][1][l], gradient[c][2][l]);
-        blocks[at(v)] += lumped * g * g.transpose();
-      }
-    }
-  });
-}
-
-void ShellBending::assemble(ConstVectors x, double scale, PairBlocks blocks, Float4* gradients) const {
-  slabs_.for_each_batch([&](int first, int count, const Slabs::Slab& slab) {
-    Batch<4> corners, gradient;
-    double lumped[element_lanes];
-    unsigned rows[element_lanes];
-    slabs_.gather(first, count, x, corners);
-    gradients_of(corners, gradient);
-    load(coupling_.lumped, first, count, lumped);
-    slabs_.corners_in(first, count, slab, rows);
-    HingeStencil::add_squares(lumped, gradient, scale, count, rows, slots_.data() + first, blocks.columns);
-    if (gradients == nullptr) return;
-    for (int l = 0; l < std::min(count, slab.owned_end - first); ++l) {
-      Float4* const to = gradients + 4 * at(slabs_.elements()[at(first + l)]);
-      for (int c = 0; c < 4; ++c) {
-        to[c] = Float4{static_cast<float>(gradient[c][0][l]), static_cast<float>(gradient[c][1][l]),
-                       static_cast<float>(gradient[c][2][l]), 0};
-      }
-    }
-  });
+  angles_->add_blocks(x, coupling_.lumped, blocks);
 }
 
 void ShellBending::add_stiffness_matrix(Stiffness, ConstVectors x, double scale, std::span<const double>,
                                         PairBlocks blocks) const {
-  assemble(x, scale, blocks, nullptr);
+  angles_->assemble(x, coupling_.lumped, scale, blocks, nullptr);
 }
 
 bool ShellBending::is_stiff(double scale, std::span<const double> masses,
@@ -276,8 +135,8 @@ void ShellBending::linearize_stiffness(Stiffness, ConstVectors x, double factor,
   const double scale = into.scale() * factor;
   const bool whole =
       is_stiff(scale, into.masses().subspan(first, x.size()), into.fixed().subspan(first, x.size()));
-  assemble(x, scale, into.pair_blocks(pattern(), first),
-           whole ? into.coupled_forms(difference_, first, scale) : nullptr);
+  angles_->assemble(x, coupling_.lumped, scale, into.pair_blocks(pattern(), first),
+                    whole ? into.coupled_forms(difference_, first, scale) : nullptr);
 }
 
 }  // namespace muslin

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "muslin/energy/element_energy.hpp"
+#include "muslin/energy/hinge_angles.hpp"
 #include "muslin/energy/hinge_coupling.hpp"
-#include "muslin/energy/hinge_stencil.hpp"
 #include "muslin/energy/moment_curves.hpp"
 #include "muslin/energy/shell_pattern.hpp"
 #include "muslin/potential/form_coupling.hpp"
@@ -59,27 +59,19 @@ class ShellBending : public ElementEnergy {
                            std::size_t first) const override;
 
   const HingeCoupling& coupling() const { return coupling_; }
+  const std::shared_ptr<const HingeAngles>& angles() const { return angles_; }
 
  private:
-  using Slabs = ElementSlabs<4>;
 
   /// Sets what linear systems need, of a plate at least as stiff as this one ever is.
   void prepare_systems(const Shell& shell, const HingeCoupling& stiffest);
-  std::vector<double> deviations(ConstVectors x) const;
-  /// Returns J p.
-  std::vector<double> changes(ConstVectors x, ConstVectors p) const;
   /// Returns true if `scale` K is so large relative to the masses that linear systems need more than Λ.
   bool is_stiff(double scale, std::span<const double> masses, std::span<const std::uint8_t> fixed) const;
-  void load(std::span<const double> of_hinge, int first, int count, double* lanes) const;
-  /// Adds `scale` Jᵀ Λ J to `blocks`; sets J, four vectors per hinge, unless null.
-  void assemble(ConstVectors x, double scale, PairBlocks blocks, Float4* gradients) const;
 
-  Slabs slabs_;
-  HingeStencil stencil_;
+  std::shared_ptr<const HingeAngles> angles_;
   HingeCoupling coupling_;  // Λ bounds all of the stiffness
   std::optional<MomentCurves> curves_;
   // With a pattern.
-  std::vector<Slabs::Slots> slots_;                 // by entry
   std::shared_ptr<const FormCoupling> difference_;  // K − Λ
   double stiffness_ = 0;                            // of all hinges: Σ Λ |∂θ/∂x|² at rest [N/m]
 };

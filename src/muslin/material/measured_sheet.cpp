@@ -46,6 +46,9 @@ SheetMoments moments_of(const ShellMaterial& m) {
 }
 
 bool has_bending_curves(const ShellMaterial& m) { return m.bending_warp_curve || m.bending_weft_curve; }
+bool has_bending_friction(const ShellMaterial& m) {
+  return m.bending_friction_warp > 0 || m.bending_friction_weft > 0;
+}
 bool has_curves(const ShellMaterial& m) { return m.warp_curve || m.weft_curve || m.shear_curve; }
 
 std::optional<std::string> problem_of_strip(const MeasuredCurve& curve) {

@@ -21,6 +21,7 @@ struct SheetMoments {
 SheetMoments moments_of(const ShellMaterial& material);
 
 bool has_bending_curves(const ShellMaterial& material);
+bool has_bending_friction(const ShellMaterial& material);
 bool has_curves(const ShellMaterial& material);
 
 /// Returns the problem of a strip's curve whose stress does not rise everywhere, as StressCurve requires;

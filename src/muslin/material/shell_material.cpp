@@ -47,6 +47,8 @@ void complete(const TomlTable& table, ShellMaterial& m) {
   if (table.has("membrane_shear")) m.shear_curve.reset();
   if (table.has("bending_warp")) m.bending_warp_curve.reset();
   if (table.has("bending_weft")) m.bending_weft_curve.reset();
+  if (!table.has("bending_friction_weft") && m.bending_friction_weft == 0)
+    m.bending_friction_weft = m.bending_friction_warp;
   if (table.has("base")) return;
   if (!table.has("membrane_weft") && !table.has("weft_curve")) {
     m.membrane_weft = m.membrane_warp;
@@ -177,6 +179,23 @@ schema::Table declared() {
            .unit("1/m, N")
            .otherwise("as warp")
            .means("in place of `bending_weft`: points `[[curvature, moment per width], …]` when weft bends"),
+       number("bending_friction_warp", &ShellMaterial::bending_friction_warp)
+           .unit("N")
+           .range(sheet_modulus)
+           .shown_if<Sheet>(has_bending_friction)
+           .means("internal friction: greatest moment per width with which warp resists every change of "
+                  "curvature, half of KES-FB2's 2HB; 0 is off"),
+       number("bending_friction_weft", &ShellMaterial::bending_friction_weft)
+           .unit("N")
+           .range(sheet_modulus)
+           .otherwise("as warp")
+           .shown_if<Sheet>(has_bending_friction)
+           .means("internal friction when weft bends"),
+       number("bending_friction_curvature", &ShellMaterial::bending_friction_curvature)
+           .unit("1/m")
+           .range({1e-3, 1e6, false})
+           .shown_if<Sheet>(has_bending_friction)
+           .means("change of curvature over which internal friction builds up"),
        number("mass_damping", &ShellMaterial::mass_damping)
            .unit("1/s")
            .range(sheet_damping)

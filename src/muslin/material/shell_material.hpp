@@ -31,6 +31,9 @@ struct ShellMaterial {
   /// In place of bending_warp: (curvature [1/m], moment per width [N]).
   std::optional<MeasuredCurve> bending_warp_curve;
   std::optional<MeasuredCurve> bending_weft_curve;  ///< in place of bending_weft
+  double bending_friction_warp = 0;                 ///< greatest moment per width of internal friction [N]
+  double bending_friction_weft = 0;                 ///< [N]
+  double bending_friction_curvature = 10;           ///< over which it builds up [1/m]
   double mass_damping = 0;                          ///< Rayleigh α [1/s]
   double stiffness_damping = 0;                     ///< Rayleigh β of stretch and shear [s]
   double bending_damping = 0;                       ///< Rayleigh β of bending [s]

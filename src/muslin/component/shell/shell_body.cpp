@@ -100,6 +100,11 @@ std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
     ++place;
     if (*curve) hash = hash_bytes((*curve)->data(), (*curve)->size() * sizeof(Vec2), hash + place);
   }
+  if (has_bending_friction(m)) {
+    const std::array friction = {m.bending_friction_warp, m.bending_friction_weft,
+                                 m.bending_friction_curvature};
+    hash = hash_bytes(friction.data(), sizeof friction, hash);
+  }
   return hash;
 }
 
@@ -149,6 +154,9 @@ std::string ShellBody::description() const {
   if (has_bending_curves(m))
     text += fmt::format("  curves      bending at least warp {:.3g}, weft {:.3g} N·m\n",
                         moments.warp.least_slope(), moments.weft.least_slope());
+  if (has_bending_friction(m))
+    text += fmt::format("  friction    of bending, up to warp {:.3g}, weft {:.3g} N within {:.3g}/m\n",
+                        m.bending_friction_warp, m.bending_friction_weft, m.bending_friction_curvature);
   if (own().stretch_limit)
     text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *own().stretch_limit);
   return text;

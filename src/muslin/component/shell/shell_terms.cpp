@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "muslin/component/shell/shell_body.hpp"
+#include "muslin/energy/bending_friction.hpp"
 #include "muslin/energy/element_energy.hpp"
 #include "muslin/energy/measured_membrane.hpp"
 #include "muslin/energy/membrane_energy.hpp"
@@ -42,6 +43,7 @@ class ShellTerms {
     const auto bending = bending_on(pattern, held);
     add("bending", bending);
     add_blocks(*bending, 2 * 4);  // blocks of half the stiffness that bounds it
+    if (has_bending_friction(m)) add_bending_friction(*bending, held);
     if (m.stiffness_damping > 0)
       add_damping("stiffness damping", std::make_shared<ElementDamping>(membrane, m.stiffness_damping));
     if (m.bending_damping > 0)
@@ -61,7 +63,7 @@ class ShellTerms {
         body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson},
         std::move(pattern));
   }
-  std::shared_ptr<const ElementEnergy> bending_on(std::shared_ptr<const SymmetricPattern> pattern,
+  std::shared_ptr<const ShellBending> bending_on(std::shared_ptr<const SymmetricPattern> pattern,
                                                   std::span<const std::uint8_t> held) const {
     const ShellMaterial& m = material_;
     if (has_bending_curves(m)) {
@@ -73,6 +75,17 @@ class ShellTerms {
     return std::make_shared<ShellBending>(
         body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias, m.poisson},
         std::move(pattern), held);
+  }
+  void add_bending_friction(const ShellBending& bending, std::span<const std::uint8_t> held) {
+    const ShellMaterial& m = material_;
+    const BendingFrictionLimits limits{m.bending_friction_warp, m.bending_friction_weft,
+                                       m.bending_friction_curvature};
+    const auto friction =
+        std::make_shared<BendingFriction>(body_.name, body_.shell, bending.angles(), limits, held);
+    body_.loads.push_back({"bending friction", EnergyRole::elastic, friction});
+    StepContext start;
+    start.positions = body_.mesh.positions;
+    add_blocks(*friction->potential(start), 2 * 4);
   }
   void add(const char* name, std::shared_ptr<const Potential> potential) {
     body_.potentials.push_back({name, EnergyRole::elastic, std::move(potential)});
