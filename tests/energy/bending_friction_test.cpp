@@ -1,5 +1,5 @@
-// Internal friction of bending: the loop of moment over curvature on any mesh, what it loses, derivatives with
-// a history, matrices.
+// Internal friction of bending: the loop of moment over curvature on any mesh, what it loses, derivatives
+// with a history, matrices.
 #include "muslin/energy/bending_friction.hpp"
 
 #include <algorithm>
@@ -215,7 +215,8 @@ TEST(BendingFriction, StiffnessIsNotNegativeAndMatricesHaveAtLeastHalfOfIt) {
 TEST(BendingFriction, SameBitsForAnyNumberOfThreads) {
   const Mesh mesh = test::flat_sheet(50, 50, 1, 1, 0.2);
   const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
-  const std::vector<Vec3> x = test::rolled(mesh.positions, 6, 0.4), back = test::rolled(mesh.positions, 4, 0.4);
+  const std::vector<Vec3> x = test::rolled(mesh.positions, 6, 0.4),
+                          back = test::rolled(mesh.positions, 4, 0.4);
   const auto result = [&](int threads) {
     set_thread_count(threads);
     Friction friction(shell);

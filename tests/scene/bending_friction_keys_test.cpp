@@ -1,4 +1,5 @@
-// Keys of internal friction: what is left out, what a base gives, what is wrong, and that they reach the model.
+// Keys of internal friction: what is left out, what a base gives, what is wrong, and that they reach the
+// model.
 #include <map>
 #include <memory>
 #include <string>
@@ -46,7 +47,8 @@ TEST(BendingFrictionKeys, OfWeftIsThatOfWarpUnlessGiven) {
   const ShellMaterial both = read(cloth + ", bending_friction_warp = 2e-4");
   EXPECT_EQ(both.bending_friction_weft, 2e-4);
   EXPECT_EQ(both.bending_friction_curvature, 10);
-  EXPECT_EQ(read(cloth + ", bending_friction_warp = 2e-4, bending_friction_weft = 0").bending_friction_weft, 0);
+  EXPECT_EQ(read(cloth + ", bending_friction_warp = 2e-4, bending_friction_weft = 0").bending_friction_weft,
+            0);
   EXPECT_EQ(read("base = 'cotton', bending_friction_warp = 2e-4").bending_friction_weft, 2e-4);
 }
 
@@ -80,7 +82,8 @@ TEST(BendingFrictionKeys, ReachTheModelOnlyIfGiven) {
   EXPECT_NE(without.bodies[0].material_hash(0), with.bodies[0].material_hash(0));
   EXPECT_LT(build_model(scene(cloth + ", bending_friction_weft = 1e3")).bodies[0].statistics.stable_step,
             0.5 * without.bodies[0].statistics.stable_step);
-  EXPECT_THAT(describe_text(with), HasSubstr("friction    of bending, up to warp 0, weft 0.0002 N within 10/m"));
+  EXPECT_THAT(describe_text(with),
+              HasSubstr("friction    of bending, up to warp 0, weft 0.0002 N within 10/m"));
   const auto resolved = [](const Model& model) {
     return nlohmann::json::parse(model.scene.resolved)["body"][0]["material"];
   };

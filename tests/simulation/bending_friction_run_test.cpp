@@ -47,8 +47,8 @@ std::vector<Vec3> rolled(const Model& model) {
   for (const Vec3& p : model.rest_positions) {
     const double along = std::max(0.0, p.x() - edge);
     const double angle = rolled_to * along;
-    x.emplace_back(std::min(p.x(), edge) + std::sin(angle) / rolled_to,
-                   (1 - std::cos(angle)) / rolled_to, p.z());
+    x.emplace_back(std::min(p.x(), edge) + std::sin(angle) / rolled_to, (1 - std::cos(angle)) / rolled_to,
+                   p.z());
   }
   return x;
 }
@@ -71,7 +71,9 @@ std::pair<double, double> curvatures(const Simulation& simulation) {
   const PlateCurvatures plate = plate_curvatures(shell, {1, 1, 1, 0}, held);
   double least = rolled_to, greatest = -rolled_to;
   for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
-    const auto x = [&](int c) { return model.rest_positions[static_cast<std::size_t>(shell.triangles[t][c])].x(); };
+    const auto x = [&](int c) {
+      return model.rest_positions[static_cast<std::size_t>(shell.triangles[t][c])].x();
+    };
     const double middle = (x(0) + x(1) + x(2)) / 3;
     if (middle < edge || middle > 4.5 * edge) continue;
     const double curvature = std::abs(plate.of(t, bent)[0]);
@@ -96,7 +98,8 @@ TEST(BendingFrictionRun, StripThatIsLetGoStaysBentByTheFrictionOverItsRigidity) 
 
 class BendingFrictionBalance : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Integrators, BendingFrictionBalance,
-                         testing::Values("implicit_euler", "bdf2", "linearly_implicit_euler", "symplectic_euler"),
+                         testing::Values("implicit_euler", "bdf2", "linearly_implicit_euler",
+                                         "symplectic_euler"),
                          [](const auto& info) { return info.param; });
 
 TEST_P(BendingFrictionBalance, ClosesAndLosesTheWorkOfFriction) {

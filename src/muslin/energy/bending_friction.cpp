@@ -151,14 +151,15 @@ BendingFriction::BendingFriction(const std::string& name, const Shell& shell,
                                  std::shared_ptr<const HingeAngles> angles,
                                  const BendingFrictionLimits& limits, std::span<const std::uint8_t> held)
     : name_(name + ".slid_curvature") {
-  require(limits.warp >= 0 && limits.weft >= 0, "a moment of internal friction is negative", "give 0 or more");
+  require(limits.warp >= 0 && limits.weft >= 0, "a moment of internal friction is negative",
+          "give 0 or more");
   require(limits.curvature > 0, "the curvature over which internal friction builds up is not positive",
           "give more than 0");
   // Constant curvatures are exact with any moduli.
   const BendingModuli even{1, 1, 1, 0};
-  sheet_ = std::make_shared<const Sheet>(
-      Sheet{std::move(angles), plate_curvatures(shell, even, held), shell.areas,
-            Slider{limits.warp, limits.curvature}, Slider{limits.weft, limits.curvature}});
+  sheet_ = std::make_shared<const Sheet>(Sheet{std::move(angles), plate_curvatures(shell, even, held),
+                                               shell.areas, Slider{limits.warp, limits.curvature},
+                                               Slider{limits.weft, limits.curvature}});
 }
 
 std::unique_ptr<Potential> BendingFriction::potential(const StepContext& step) const {

@@ -1,13 +1,13 @@
 // BendingFriction is the internal friction of a sheet that bends: threads and fibres that slide on each other
 // resist every change of curvature, up to a moment per width M₀, and lose energy. In every triangle, along
 // warp and along weft, a spring of stiffness M₀/κ₀ in series with a slider that yields at M₀ lies beside the
-// elastic plate. The curvature κ_s by which the slider has moved is its memory (potential/history.hpp). A step
-// minimises over the slip s ≥ 0
+// elastic plate. The curvature κ_s by which the slider has moved is its memory (potential/history.hpp). A
+// step minimises over the slip s ≥ 0
 //
 //   ψ = ½ (M₀/κ₀) (|κ − κ_s| − s)² + M₀ s,   s = max(0, |κ − κ_s| − κ₀),
 //
-// per area, of which the first term is stored and the second one lost. ψ is convex in κ. A sheet that curves in
-// one direction, whatever it is, has the moment M₀ if both threads have. Models of this kind are fitted to
+// per area, of which the first term is stored and the second one lost. ψ is convex in κ. A sheet that curves
+// in one direction, whatever it is, has the moment M₀ if both threads have. Models of this kind are fitted to
 // cloth by Miguel et al. (Modeling and estimation of internal friction in cloth, 2013).
 // docs/theory/internal-friction.md.
 #pragma once
@@ -33,8 +33,8 @@ struct BendingFrictionLimits {
 
 class BendingFriction : public Load {
  public:
-  /// `name` is unique among the loads of a run and names the array of κ_s in the history. `angles` are those of
-  /// `shell`, `held` as in ShellBending. Where the history has no κ_s, the friction is unstressed at the
+  /// `name` is unique among the loads of a run and names the array of κ_s in the history. `angles` are those
+  /// of `shell`, `held` as in ShellBending. Where the history has no κ_s, the friction is unstressed at the
   /// beginning of the step. Errors: usage, if a limit is negative or κ₀ is not positive.
   BendingFriction(const std::string& name, const Shell& shell, std::shared_ptr<const HingeAngles> angles,
                   const BendingFrictionLimits& limits, std::span<const std::uint8_t> held = {});

@@ -1,6 +1,7 @@
-// PlateCurvatures are the curvatures κ = B d of the triangles of a shell against rest, κ_uu along warp and κ_vv
-// along weft, as sums over the deviations d of the hinges (energy/hinge_angles.hpp). They are the curvatures
-// for which the matrix K of energy/hinge_coupling.hpp, whose function makes them, is that of a plate.
+// PlateCurvatures are the curvatures κ = B d of the triangles of a shell against rest, κ_uu along warp and
+// κ_vv along weft, as sums over the deviations d of the hinges (energy/hinge_angles.hpp). They are the
+// curvatures for which the matrix K of energy/hinge_coupling.hpp, whose function makes them, is that of a
+// plate.
 #pragma once
 
 #include <cstddef>

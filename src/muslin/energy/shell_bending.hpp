@@ -62,7 +62,6 @@ class ShellBending : public ElementEnergy {
   const std::shared_ptr<const HingeAngles>& angles() const { return angles_; }
 
  private:
-
   /// Sets what linear systems need, of a plate at least as stiff as this one ever is.
   void prepare_systems(const Shell& shell, const HingeCoupling& stiffest);
   /// Returns true if `scale` K is so large relative to the masses that linear systems need more than Λ.

@@ -64,7 +64,7 @@ class ShellTerms {
         std::move(pattern));
   }
   std::shared_ptr<const ShellBending> bending_on(std::shared_ptr<const SymmetricPattern> pattern,
-                                                  std::span<const std::uint8_t> held) const {
+                                                 std::span<const std::uint8_t> held) const {
     const ShellMaterial& m = material_;
     if (has_bending_curves(m)) {
       const SheetMoments moments = moments_of(m);
