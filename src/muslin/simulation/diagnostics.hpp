@@ -20,7 +20,7 @@ struct Diagnostics {
   double time = 0;
   double kinetic = 0, elastic = 0, potential = 0;
   double work = 0;        ///< external work since the start (forces, wind, moving pins)
-  double dissipated = 0;  ///< lost since the start, by damping and by the integrator
+  double dissipated = 0;  ///< lost since the start, by damping, internal friction and the integrator
   Vec3 momentum = Vec3::Zero();
   int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
   double residual = 0;                               ///< largest of this frame [m/s²]

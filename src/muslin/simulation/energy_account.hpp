@@ -49,7 +49,7 @@ struct SolvedStep {
 /// Energies [J] that entered or left the system during a step.
 struct EnergyFlow {
   double work = 0;             ///< done by loads and by held vertices that moved
-  double dissipated = 0;       ///< by damping and by the integrator; < 0 if the integrator adds energy
+  double dissipated = 0;       ///< by damping, internal friction and the integrator; < 0 if it adds energy
   double unbalanced = 0;       ///< work of the forces at free vertices that the solver left out of balance
   std::vector<double> stored;  ///< by each of `acts` at the end; 0 for roles that store none
 };
