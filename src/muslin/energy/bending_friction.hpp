@@ -7,9 +7,9 @@
 //   ψ = ½ (M₀/κ₀) (|κ − κ_s| − s)² + M₀ s,   s = max(0, |κ − κ_s| − κ₀),
 //
 // per area, of which the first term is stored and the second one lost. ψ is convex in κ. A sheet that curves
-// in one direction, whatever it is, has the moment M₀ if both threads have. Models of this kind are fitted to
-// cloth by Miguel et al. (Modeling and estimation of internal friction in cloth, 2013).
-// docs/theory/internal-friction.md.
+// in one direction, whatever it is, has the moment M₀ if both threads have. Miguel et al. (Modeling and
+// estimation of internal friction in cloth, 2013) fit the friction of cloth, by Dahl's model.
+// docs/theory/internal-friction.md compares both.
 #pragma once
 
 #include <cstddef>
