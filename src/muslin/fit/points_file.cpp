@@ -1,0 +1,65 @@
+#include "muslin/fit/points_file.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "muslin/core/error.hpp"
+#include "muslin/core/toml_value.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr std::string_view separators = ",; \t\r";
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  while (true) {
+    const std::size_t begin = line.find_first_not_of(separators);
+    if (begin == std::string_view::npos) return words;
+    line.remove_prefix(begin);
+    const std::size_t length = std::min(line.find_first_of(separators), line.size());
+    words.push_back(line.substr(0, length));
+    line.remove_prefix(length);
+  }
+}
+
+std::optional<double> number_of(std::string_view word) {
+  double x = 0;
+  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), x);
+  if (status != std::errc() || end != word.data() + word.size() || !std::isfinite(x)) return std::nullopt;
+  return x;
+}
+
+}  // namespace
+
+std::vector<Vec2> read_points(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
+  std::vector<Vec2> points;
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    at = end + 1;
+    ++number;
+    const std::vector<std::string_view> words = words_of(line);
+    if (words.empty() || words.front().starts_with('#')) continue;
+    const auto x = number_of(words[0]);
+    if (!x && points.empty()) continue;  // titles of columns
+    const auto y = words.size() == 2 ? number_of(words[1]) : std::nullopt;
+    if (!x || !y)
+      throw Error(ErrorKind::input, Place{file.string(), number, 0}, "the line is not two numbers",
+                  "write two numbers with decimal points, separated by a comma, a semicolon or a tab");
+    points.emplace_back(*x, *y);
+  }
+  if (points.empty())
+    throw Error(ErrorKind::input, Place{file.string(), 0, 0}, "the file has no line of two numbers",
+                "write a point per line: 0.01, 12.5");
+  return points;
+}
+
+}  // namespace muslin
