@@ -16,6 +16,7 @@ void add_render(CLI::App& program);
 void add_export(CLI::App& program);
 void add_view(CLI::App& program);
 void add_report(CLI::App& program);
+void add_fit(CLI::App& program);
 void add_materials(CLI::App& program);
 void add_schema(CLI::App& program);
 void add_verify(CLI::App& program);

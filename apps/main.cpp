@@ -75,6 +75,7 @@ int run(int argc, char** argv) {
   add_render(program);
   add_view(program);
   add_report(program);
+  add_fit(program);
   add_export(program);
   add_materials(program);
   add_schema(program);

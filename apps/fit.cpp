@@ -1,0 +1,53 @@
+// muslin fit MEASUREMENTS.toml
+#include "muslin/fit/fit.hpp"
+
+#include <filesystem>
+#include <memory>
+
+#include "command.hpp"
+#include "progress_line.hpp"
+#include <fmt/format.h>
+
+#include "muslin/core/output_file.hpp"
+
+namespace muslin::app {
+namespace {
+
+struct FitArguments {
+  std::string measurements, output;
+  DrapeOptions drape;
+  bool quiet = false;
+};
+
+void fit(const FitArguments& a) {
+  listen_for_interrupts();
+  const Measurements measurements = read_measurements(a.measurements);
+  ProgressLine line(a.quiet);
+  const Fit made = fit_fabric(measurements, a.drape, line.progress());
+  line.finish();
+  const std::filesystem::path file = a.output.empty() ? measurements.name + ".toml" : a.output;
+  std::error_code ignored;
+  if (std::filesystem::equivalent(file, a.measurements, ignored))
+    throw Error(ErrorKind::usage, {a.measurements}, "the material would replace its measurements",
+                "name another file with -o");
+  write_atomically(file, made.text);
+  if (!a.quiet) print(fit_table(made) + file.string() + "\n");
+}
+
+}  // namespace
+
+void add_fit(CLI::App& program) {
+  auto* command = program.add_subcommand("fit", "fit a fabric to measurements and write its material file");
+  auto a = std::make_shared<FitArguments>();
+  command->add_option("MEASUREMENTS", a->measurements, "file of measurements (.toml)")->required();
+  command->add_option("-o,--output", a->output, "material file (default: NAME.toml)");
+  command
+      ->add_option("--rings", a->drape.rings, "cells of the cloth from its support to its edge (default: 6)")
+      ->check(CLI::Range(3, 40));
+  command->add_option("--drops", a->drape.drops, "simulated drapes that are averaged (default: 2)")
+      ->check(CLI::Range(1, 20));
+  command->add_flag("--quiet", a->quiet, "no progress, no table");
+  command->callback([a] { fit(*a); });
+}
+
+}  // namespace muslin::app

@@ -1,0 +1,150 @@
+#include "muslin/fit/drape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "muslin/geometry/mesh.hpp"
+#include "muslin/scene/model.hpp"
+#include "muslin/scene/scene.hpp"
+#include "muslin/simulation/simulation.hpp"
+
+namespace muslin {
+namespace {
+
+constexpr double tau = 2 * std::numbers::pi;
+
+/// Damping brings the cloth to rest sooner; the shape at rest does not depend on it. The cloth does not touch
+/// itself: it hangs in open folds.
+constexpr const char* drape_scene = R"(
+[time]
+frame_rate = 24
+duration = 5
+[[body]]
+name = "cloth"
+mesh = "cloth"
+model = "shell"
+warp = [1, 0, 0]
+material = "cotton"
+contact = false
+[[pin]]
+where = { group = "held" }
+[[force]]
+type = "gravity"
+acceleration = [0, -9.80665, 0]
+)";
+constexpr double settling = 4;        // mass damping [1/s]
+constexpr int first_look = 24;        // frame after which the cloth may be at rest
+constexpr double at_rest = 1e-6;      // kinetic energy over what the cloth gains by its fall
+constexpr double unevenness = 0.002;  // of the start over the overhang [m]
+
+/// A ring of cloth from one row inside of the edge of the support to its own edge, level at y = 0. Both rows
+/// of the support are the group `held`: a clamp.
+struct Ring {
+  Ring(const DrapeTest& test, int rings)
+      : inner(test.support_diameter / 2), width((test.specimen_diameter - test.support_diameter) / 2) {
+    const double cell = width / rings;
+    // Cells in the middle of the overhang are square.
+    sectors = 4 * static_cast<int>(std::round(tau * (inner + width / 2) / cell / 4));
+    rows = rings + 2;
+    for (int row = 0; row < rows; ++row)
+      for (int sector = 0; sector < sectors; ++sector) {
+        const double radius = inner + (row - 1) * cell, angle = tau * sector / sectors;
+        mesh.positions.emplace_back(radius * std::cos(angle), 0, -radius * std::sin(angle));
+      }
+    for (int row = 0; row + 1 < rows; ++row)
+      for (int sector = 0; sector < sectors; ++sector) {
+        const int next = (sector + 1) % sectors;
+        mesh.add_face(std::array{vertex(row, sector), vertex(row + 1, sector), vertex(row + 1, next),
+                                 vertex(row, next)});
+      }
+    MeshGroup held{"held", {}, {}};
+    for (int v = 0; v < 2 * sectors; ++v) held.vertices.push_back(v);
+    mesh.groups.push_back(held);
+  }
+
+  int vertex(int row, int sector) const { return row * sectors + sector; }
+
+  double inner, width;
+  int sectors = 0, rows = 0;
+  Mesh mesh;
+};
+
+/// The start of a drop: waves of 2 to 9 folds around, whose phases differ from drop to drop.
+std::vector<Vec3> uneven(const Ring& ring, int drop) {
+  std::vector<Vec3> positions = ring.mesh.positions;
+  for (Vec3& p : positions) {
+    const double angle = std::atan2(-p.z(), p.x());
+    const double share = std::max(0.0, (std::hypot(p.x(), p.z()) - ring.inner) / ring.width);
+    double wave = 0;
+    for (int folds = 2; folds <= 9; ++folds)
+      wave += std::cos(folds * angle + tau * std::fmod(0.618034 * (8 * drop + folds) * folds, 1.0));
+    p.y() += unevenness * share * share * wave / 8;
+  }
+  return positions;
+}
+
+/// The area of the shadow: the farthest point of the cloth in every direction from the middle.
+double shadow(const Ring& ring, const std::vector<Vec3>& positions) {
+  constexpr int directions = 720;
+  std::array<double, directions> farthest;
+  farthest.fill(ring.inner);
+  const auto spread = [&](int v, int w) {
+    const Vec2 a(positions[static_cast<std::size_t>(v)].x(), -positions[static_cast<std::size_t>(v)].z());
+    const Vec2 b(positions[static_cast<std::size_t>(w)].x(), -positions[static_cast<std::size_t>(w)].z());
+    const double from = std::atan2(a[1], a[0]) / tau * directions;
+    const double turn = std::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]) / tau * directions;
+    const int first = static_cast<int>(std::ceil(std::min(from, from + turn)));
+    for (int i = first; i <= std::max(from, from + turn); ++i) {
+      const Vec2 ray(std::cos(tau * i / directions), std::sin(tau * i / directions));
+      const Vec2 edge = b - a;
+      const double across = ray[0] * edge[1] - ray[1] * edge[0];
+      const double radius = std::abs(across) > 1e-12 ? (a[0] * edge[1] - a[1] * edge[0]) / across
+                                                     : std::max(a.norm(), b.norm());
+      double& far = farthest[static_cast<std::size_t>(((i % directions) + directions) % directions)];
+      far = std::max(far, std::min(radius, std::max(a.norm(), b.norm())));
+    }
+  };
+  for (int row = 1; row < ring.rows; ++row)
+    for (int sector = 0; sector < ring.sectors; ++sector) {
+      spread(ring.vertex(row, sector), ring.vertex(row, (sector + 1) % ring.sectors));
+      if (row + 1 < ring.rows) spread(ring.vertex(row, sector), ring.vertex(row + 1, sector));
+    }
+  double twice = 0;
+  for (const double radius : farthest) twice += radius * radius * tau / directions;
+  return twice / 2;
+}
+
+}  // namespace
+
+double drape_coefficient(const Material& material, const DrapeTest& test, const DrapeOptions& options,
+                         const Progress& progress) {
+  const Ring ring(test, options.rings);
+  Scene scene = parse_scene(drape_scene, "drape.toml");
+  scene.bodies.front().material = material;
+  scene.bodies.front().material.shell->mass_damping = settling;
+  scene.meshes["cloth"] = std::make_shared<const Mesh>(ring.mesh);
+  const auto model = std::make_shared<const Model>(build_model(scene));
+  const double disc = ring.inner * ring.inner * std::numbers::pi;
+  const double whole = std::pow(ring.inner + ring.width, 2) * std::numbers::pi;
+  const double fall = material.shell->areal_density * (whole - disc) * 9.8 * ring.width;  // J
+
+  double sum = 0;
+  for (int drop = 0; drop < options.drops; ++drop) {
+    Simulation simulation(model);
+    simulation.set_positions(uneven(ring, drop));
+    for (int frame = 1; frame <= scene.time.frames(); ++frame) {
+      progress.at((drop + static_cast<double>(frame) / scene.time.frames()) / options.drops, "drape");
+      simulation.advance();
+      if (frame >= first_look && simulation.diagnostics().kinetic < at_rest * fall) break;
+    }
+    sum += (shadow(ring, simulation.state().positions) - disc) / (whole - disc);
+  }
+  return sum / options.drops;
+}
+
+}  // namespace muslin

@@ -1,0 +1,22 @@
+// Simulates Cusick's drape test: a disc of cloth, held between two smaller discs, hangs over their edge. The
+// drape coefficient is the share of the overhanging ring that the shadow of the cloth covers (BS 5058, ISO
+// 9073-9).
+#pragma once
+
+#include "muslin/core/progress.hpp"
+#include "muslin/fit/measurements.hpp"
+#include "muslin/material/material.hpp"
+
+namespace muslin {
+
+struct DrapeOptions {
+  int rings = 6;  ///< of cells from the support to the edge of the cloth
+  int drops = 2;  ///< simulated drapes whose mean is taken, each from another small unevenness
+  int most = 12;  ///< of the materials that a fit tries
+};
+
+/// Returns the coefficient of a material with [shell], the mean of the drops. Errors: solver.
+double drape_coefficient(const Material& material, const DrapeTest& test, const DrapeOptions& options,
+                         const Progress& progress = {});
+
+}  // namespace muslin

@@ -1,0 +1,45 @@
+// Inverts measurements to the numbers of a shell's material by formulas that are exact for its laws.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "muslin/fit/measurements.hpp"
+#include "muslin/material/shell_material.hpp"
+
+namespace muslin {
+
+/// A key of [shell] and how its value was found.
+struct FittedValue {
+  std::string key;
+  double value = 0;                    ///< unless there is a curve
+  std::optional<MeasuredCurve> curve;  ///< in the units of the key
+  std::string unit;                    ///< of the value
+  std::string from;                    ///< the measurement, or the rule of a guess
+  bool guess = false;
+  std::optional<double> plus_minus = {};  ///< standard uncertainty; of a curve: as a share of its forces
+  std::optional<double> residual =
+      {};  ///< of a curve: root of the squares of what is left over those measured
+};
+
+struct Inversion {
+  std::vector<FittedValue> values;  ///< in the order of the keys of [shell]
+  std::vector<std::string> notes;   ///< for the user
+};
+
+/// Fits every key without its uncertainty. Those that were not measured get a value by a rule that `from`
+/// states. Errors: input, with the place of the test.
+Inversion invert(const Measurements& measurements);
+
+/// Returns the value of the key; null if there is none.
+const FittedValue* find_value(const Inversion& inversion, const std::string& key);
+
+/// Returns the number by which the uncertainty of a value is measured: the value, or the area below a curve.
+double magnitude(const FittedValue& value);
+
+/// States the uncertainties of the factors of specimens whose tests do not: the scatter between specimens of
+/// the same direction.
+void estimate_scatter(Measurements& measurements);
+
+}  // namespace muslin

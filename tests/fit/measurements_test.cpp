@@ -1,0 +1,184 @@
+// Files of measurements: what they say, and what is wrong with bad ones.
+#include "muslin/fit/measurements.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "cache/scratch.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "muslin/fit/points_file.hpp"
+#include "muslin/schema/publish.hpp"
+
+namespace muslin {
+namespace {
+
+using test::Scratch;
+using test::write_bytes;
+using testing::HasSubstr;
+
+const std::string density = "areal_density = 0.12\n";
+
+Measurements read(const Scratch& scratch, const std::string& text) {
+  write_bytes(scratch / "m.toml", text);
+  return read_measurements(scratch / "m.toml");
+}
+
+/// The message of the error of a file.
+std::string refusal(const std::string& text, ErrorKind kind = ErrorKind::input) {
+  const Scratch scratch;
+  try {
+    read(scratch, text);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind);
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Measurements, RepeatsGiveTheirMeanAndItsError) {
+  const Scratch scratch;
+  const Measurements m = read(scratch,
+                              "areal_density = [0.1, 0.12, 0.14]\n"
+                              "thickness = { value = 3e-4, plus_minus = 1e-5 }\n"
+                              "poisson = { value = 0.2, deviation = 0.06, count = 9 }\n");
+  EXPECT_NEAR(m.areal_density->value, 0.12, 1e-15);
+  EXPECT_NEAR(*m.areal_density->plus_minus, 0.02 / std::sqrt(3), 1e-15);
+  EXPECT_EQ(*m.thickness->plus_minus, 1e-5);
+  EXPECT_NEAR(*m.poisson->plus_minus, 0.02, 1e-15);
+}
+
+TEST(Measurements, UnitsBecomeSi) {
+  const Scratch scratch;
+  write_bytes(scratch / "warp.csv", "elongation;force\r\n# a remark\r\n1;2.5\r\n2;10\r\n");
+  const Measurements m = read(scratch, density + R"(
+[[tensile]]
+direction = "weft"
+file = "warp.csv"
+strain_unit = "mm"
+length = 0.2
+force_unit = "N"
+width = 0.05
+plus_minus = 0.02
+[[shear]]
+points = [[0.1, 1]]
+angle_unit = "radians"
+force_unit = "gf/cm"
+[[bending]]
+direction = "warp"
+points = [[0.5, 0.01], [1, 0.02]]
+curvature_unit = "1/cm"
+moment_unit = "gf cm/cm"
+)");
+  EXPECT_EQ(m.tensile[0].direction, Thread::weft);
+  EXPECT_NEAR(m.tensile[0].points[1][0], 0.01, 1e-15);
+  EXPECT_NEAR(m.tensile[0].points[1][1], 200, 1e-12);
+  EXPECT_EQ(*m.tensile[0].factor.plus_minus, 0.02);
+  EXPECT_NEAR(m.shear[0].points[0][0], 5.7295779513, 1e-9);
+  EXPECT_NEAR(m.shear[0].points[0][1], 0.980665, 1e-12);
+  EXPECT_NEAR(m.bending[0].points[1][0], 100, 1e-12);
+  EXPECT_NEAR(m.bending[0].points[1][1], 0.02 * 0.00980665, 1e-12);
+}
+
+TEST(Measurements, KesSheetInItsUnits) {
+  const Scratch scratch;
+  const Measurements m = read(scratch, R"(
+[kes]
+W = 12.5
+T = 0.55
+[kes.warp]
+EMT = 4
+WT = 6.5
+G = 1
+2HG = 2
+B = 0.1
+2HB = 0.08
+)");
+  EXPECT_NEAR(m.areal_density->value, 0.125, 1e-15);
+  EXPECT_NEAR(m.thickness->value, 5.5e-4, 1e-15);
+  EXPECT_NEAR(m.kes->warp->extension->value, 0.04, 1e-15);
+  EXPECT_NEAR(m.kes->warp->shear->value, 56.19, 0.01);
+  EXPECT_NEAR(m.kes->warp->bending->value, 9.80665e-6, 1e-12);
+  EXPECT_NEAR(m.kes->warp->bending_hysteresis->value, 7.8e-4, 1e-5);
+  EXPECT_FALSE(m.kes->weft);
+}
+
+TEST(Measurements, OutlinesGiveTheDrape) {
+  const Scratch scratch;
+  for (const auto& [name, radius] : {std::pair{"a.csv", 260.0}, {"b.csv", 250.0}}) {
+    std::ofstream file(scratch / name);
+    for (int i = 0; i < 360; ++i)
+      file << radius * std::cos(i * M_PI / 180) << ' ' << radius * std::sin(i * M_PI / 180) << '\n';
+  }
+  const Measurements m =
+      read(scratch, density + "[drape]\noutlines = [\"a.csv\", \"b.csv\"]\noutline_unit = 0.0005\n");
+  const auto share = [](double r) { return (r * r - 0.0081) / (0.0225 - 0.0081); };
+  EXPECT_NEAR(m.drape->coefficient->value, (share(0.13) + share(0.125)) / 2, 1e-4);
+  EXPECT_NEAR(*m.drape->coefficient->plus_minus, (share(0.13) - share(0.125)) / 2, 1e-4);
+}
+
+TEST(Measurements, MissingFilesAreErrorsOfFiles) {
+  EXPECT_THAT(refusal(density + "[[tensile]]\ndirection = \"warp\"\nfile = \"none.csv\"\n", ErrorKind::file),
+              HasSubstr("none.csv"));
+}
+
+TEST(Measurements, BadFilesAreErrorsWithPlaceAndRemedy) {
+  const std::string strip = density + "[[tensile]]\ndirection = \"warp\"\n";
+  EXPECT_THAT(refusal("areal_densty = 0.1\n"),
+              HasSubstr("m.toml:1:1: unknown key `areal_densty` in the file of "
+                        "measurements; did you mean `areal_density`?"));
+  EXPECT_THAT(refusal("areal_density = 120\n"), HasSubstr("give a number from 0.003 to 5 [kg/m²]"));
+  EXPECT_THAT(refusal("name = \"x\"\n"), HasSubstr("add `areal_density = …`"));
+  EXPECT_THAT(refusal(strip + "points = [[0.02, 5], [0.01, 9]]\n"),
+              HasSubstr("m.toml:4:10: [[tensile]] 0: 0.01 "
+                        "comes after 0.02; give the loading"));
+  EXPECT_THAT(refusal(strip + "points = [[0.01, -5]]\n"), HasSubstr("is negative; subtract the offset"));
+  EXPECT_THAT(refusal(strip + "points = [[1, 50], [4, 200]]\n"), HasSubstr("4 is beyond 2; give strains"));
+  EXPECT_THAT(refusal(strip + "points = [[0.04, 490000]]\n"),
+              HasSubstr("which no fabric has; check `force_unit`"));
+  EXPECT_THAT(refusal(strip + "points = [[0.04, 0.01]]\n"), HasSubstr("which no fabric has"));
+  EXPECT_THAT(refusal(strip + "points = []\n"), HasSubstr("no force at its last point"));
+  EXPECT_THAT(refusal(strip + "points = [[1]]\n"), HasSubstr("no pair of numbers"));
+  EXPECT_THAT(refusal(strip + "points = [[1, 2]]\nforce_unit = \"N\"\nstrain_unit = \"%\"\n"),
+              HasSubstr("forces in N need the `width`"));
+  EXPECT_THAT(refusal(density + "[[bending]]\ndirection = \"warp\"\nbending_length = 21\n"),
+              HasSubstr("from 0.002 to 0.3 [m]"));
+  EXPECT_THAT(refusal(density + "[[bending]]\ndirection = \"warp\"\n"), HasSubstr("states 0 results"));
+  EXPECT_THAT(refusal(density + "[[shear]]\nmodulus = 50\npoints = [[1, 1]]\n"),
+              HasSubstr("keep one of them"));
+  EXPECT_THAT(refusal(density + "[drape]\ncoefficient = 120\n"), HasSubstr("above 0 to 100 [%]"));
+  EXPECT_THAT(refusal(density + "[drape]\n"), HasSubstr("[drape] has no `coefficient`"));
+  EXPECT_THAT(refusal(density + "[kes]\n[kes.warp]\nEMT = 4\nWT = 6.5\nLT = 1\n"),
+              HasSubstr("LT is 1, but WT and EMT make it 0.65; correct one of the three"));
+  EXPECT_THAT(refusal(density + "[kes]\n[kes.warp]\n2HK = 4\n"), HasSubstr("did you mean"));
+}
+
+TEST(Measurements, BadPointsHaveTheirLine) {
+  const Scratch scratch;
+  write_bytes(scratch / "p.csv", "strain,force\n0.01,5\n0,02;9\n");
+  try {
+    read_points(scratch / "p.csv");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.place().line, 3);
+    EXPECT_THAT(error.what(), HasSubstr("decimal points"));
+  }
+}
+
+TEST(Measurements, GuideHasEveryKey) {
+  std::ifstream file(std::string(MUSLIN_SOURCE_DIR) + "/docs/guide/fitting.md");
+  std::stringstream guide;
+  guide << file.rdbuf();
+  const std::string tables = schema::markdown(measurements_table());
+  for (std::size_t at = 0; at < tables.size();) {
+    const std::size_t end = tables.find("<!-- end -->", at);
+    const std::string block = tables.substr(at, end - at);
+    EXPECT_NE(guide.str().find(block), std::string::npos) << block;
+    at = end + 14;
+  }
+}
+
+}  // namespace
+}  // namespace muslin
