@@ -38,4 +38,5 @@ NB_MODULE(_muslin, m) {
   bind_run(m);
   bind_picture(m);
   bind_run_report(m);
+  bind_fit(m);
 }

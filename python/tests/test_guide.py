@@ -27,7 +27,8 @@ def examples(page: Path) -> str:
 @pytest.fixture
 def workplace(source, tmp_path):
     """A folder that looks like the root of the repository to the examples."""
-    (tmp_path / "scenes").symlink_to(source / "scenes")
+    for folder in ("scenes", "examples"):
+        (tmp_path / folder).symlink_to(source / folder)
     (tmp_path / "out").mkdir()
     return tmp_path
 
