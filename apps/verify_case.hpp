@@ -38,6 +38,7 @@ std::vector<VerifyCase> elasticity_cases();
 std::vector<VerifyCase> bending_cases();
 std::vector<VerifyCase> shell_cases();
 std::vector<VerifyCase> resolution_cases();
+std::vector<VerifyCase> fit_cases();
 std::vector<VerifyCase> friction_cases();
 std::vector<VerifyCase> contact_cases();
 std::vector<VerifyCase> promise_cases();
