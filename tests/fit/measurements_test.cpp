@@ -137,7 +137,7 @@ TEST(Measurements, BadFilesAreErrorsWithPlaceAndRemedy) {
   EXPECT_THAT(refusal(strip + "points = [[0.01, -5]]\n"), HasSubstr("is negative; subtract the offset"));
   EXPECT_THAT(refusal(strip + "points = [[1, 50], [4, 200]]\n"), HasSubstr("4 is beyond 2; give strains"));
   EXPECT_THAT(refusal(strip + "points = [[0.04, 490000]]\n"),
-              HasSubstr("which no fabric has; check `force_unit`"));
+              HasSubstr("means 1.22e+07 N/m, which no fabric has; check the units"));
   EXPECT_THAT(refusal(strip + "points = [[0.04, 0.01]]\n"), HasSubstr("which no fabric has"));
   EXPECT_THAT(refusal(strip + "points = []\n"), HasSubstr("no force at its last point"));
   EXPECT_THAT(refusal(strip + "points = [[1]]\n"), HasSubstr("no pair of numbers"));
@@ -148,6 +148,11 @@ TEST(Measurements, BadFilesAreErrorsWithPlaceAndRemedy) {
   EXPECT_THAT(refusal(density + "[[bending]]\ndirection = \"warp\"\n"), HasSubstr("states 0 results"));
   EXPECT_THAT(refusal(density + "[[shear]]\nmodulus = 50\npoints = [[1, 1]]\n"),
               HasSubstr("keep one of them"));
+  EXPECT_THAT(refusal(density + "[[shear]]\npoints = [[5, 4000000]]\n"),
+              HasSubstr("fabrics have 0.1 to 1e+06 N/m"));
+  EXPECT_THAT(refusal(density + "[[bending]]\ndirection = \"warp\"\npoints = [[100, 50]]\n"),
+              HasSubstr("means 0.5 N·m, which no fabric has"));
+  EXPECT_THAT(refusal(strip + "points = [[1e308, 1]]\n"), HasSubstr("from -1000000000 to 1000000000"));
   EXPECT_THAT(refusal(density + "[drape]\ncoefficient = 120\n"), HasSubstr("above 0 to 100 [%]"));
   EXPECT_THAT(refusal(density + "[drape]\n"), HasSubstr("[drape] has no `coefficient`"));
   EXPECT_THAT(refusal(density + "[kes]\n[kes.warp]\nEMT = 4\nWT = 6.5\nLT = 1\n"),

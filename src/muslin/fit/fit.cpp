@@ -12,6 +12,7 @@
 namespace muslin {
 namespace {
 
+const double step = std::log(4);        // of the search at first, in the logarithm of bending
 constexpr double close_enough = 0.003;  // of the drape coefficient
 // Bending lengths between which a drape is searched [m]; the edge of a Cusick disc overhangs 60 mm.
 constexpr double shortest = 0.004, longest = 0.12;
@@ -70,18 +71,18 @@ class DrapeFit {
     const double weight = fit_.values.front().value * 9.80665;
     const double least = std::log(weight * std::pow(shortest, 3) / warp.value);
     const double most = std::log(weight * std::pow(longest, 3) / warp.value);
-    // Brackets the target from the usual rigidity on by factors of 4, then halves the bracket where a
-    // straight line through its ends is not better.
+    // Brackets the target from the usual rigidity on by factors of 4, then cuts the bracket by the straight
+    // line through its ends, but by at least a fifth.
     Try low = at(0), high = low;
     while (low.coefficient > target && low.logarithm > least) {
       high = low;
-      low = at(std::max(least, low.logarithm - std::log(4)));
+      low = at(std::max(least, low.logarithm - step));
     }
     while (high.coefficient < target && high.logarithm < most) {
       low = high;
-      high = at(std::min(most, high.logarithm + std::log(4)));
+      high = at(std::min(most, high.logarithm + step));
     }
-    if (low.coefficient > target || high.coefficient < target) refuse(least, most);
+    if (low.coefficient > target || high.coefficient < target) refuse();
     Try best = std::abs(low.coefficient - target) < std::abs(high.coefficient - target) ? low : high;
     while (tries_ < options_.most && std::abs(best.coefficient - target) > close_enough) {
       const double share =
@@ -90,7 +91,7 @@ class DrapeFit {
       if (std::abs(next.coefficient - target) < std::abs(best.coefficient - target)) best = next;
       (next.coefficient < target ? low : high) = next;
     }
-    take(best, (high.coefficient - low.coefficient) / std::max(1e-9, high.logarithm - low.logarithm));
+    take(best);
   }
 
  private:
@@ -119,7 +120,7 @@ class DrapeFit {
     return reached_.back();
   }
 
-  [[noreturn]] void refuse(double, double) const {
+  [[noreturn]] void refuse() const {
     const auto [least, most] =
         std::minmax_element(reached_.begin(), reached_.end(),
                             [](const Try& a, const Try& b) { return a.coefficient < b.coefficient; });
@@ -132,14 +133,38 @@ class DrapeFit {
         "check the coefficient, the diameters and the areal density");
   }
 
-  void take(const Try& best, double slope) {
+  /// A straight line of the coefficient over the logarithm through the tries around this one, and their
+  /// deviation from it: folds that come and go make the coefficient uneven in small.
+  struct Line {
+    double slope = 0, deviation = 0;
+  };
+  Line line_at(const Try& middle) const {
+    std::vector<Try> near;
+    for (const Try& t : reached_)
+      if (std::abs(t.logarithm - middle.logarithm) <= step)
+        near.push_back({t.logarithm - middle.logarithm, t.coefficient - middle.coefficient});
+    double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    const double n = static_cast<double>(near.size());
+    for (const Try& t : near) {
+      x += t.logarithm / n, y += t.coefficient / n;
+      xx += t.logarithm * t.logarithm / n, xy += t.logarithm * t.coefficient / n;
+      yy += t.coefficient * t.coefficient / n;
+    }
+    if (!(xx - x * x > 0)) return {};
+    const double slope = (xy - x * y) / (xx - x * x);
+    const double left = std::max(0.0, yy - y * y - slope * (xy - x * y));
+    return {slope, n > 2 ? std::sqrt(left * n / (n - 2)) : 0};
+  }
+
+  void take(const Try& best) {
+    const Line line = line_at(best);
     // The drape depends on rigidity over weight, so that an error of the areal density carries over.
     const FittedValue& density = fit_.values.front();
     std::optional<double> share;
-    if (test_.coefficient->plus_minus && slope > 0) {
-      const double by_drape = *test_.coefficient->plus_minus / slope;
+    if (test_.coefficient->plus_minus && line.slope > 0) {
+      const double by_drape = std::hypot(*test_.coefficient->plus_minus, line.deviation) / line.slope;
       const double by_weight = density.plus_minus.value_or(0) / density.value;
-      share = std::sqrt(by_drape * by_drape + by_weight * by_weight);
+      share = std::hypot(by_drape, by_weight);
     }
     fit_.values = scaled(best.logarithm);
     for (FittedValue& value : fit_.values) {

@@ -1,7 +1,10 @@
 #include "muslin/fit/measurements.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <span>
 #include <utility>
 
 #include "muslin/core/toml_table.hpp"
@@ -13,7 +16,10 @@ namespace muslin {
 namespace {
 
 constexpr double gf_per_cm = 0.980665;  // N/m
-constexpr double radian = 180 / 3.14159265358979323846;
+constexpr double radian = 180 / std::numbers::pi;
+
+constexpr Range shear_moduli{0.1, 1e6, false};  // N/m
+constexpr Range rigidities{1e-8, 0.1, false};   // N·m
 
 const std::vector<std::string> thread_words = {"warp", "weft", "bias"};
 
@@ -21,7 +27,6 @@ const std::vector<std::string> thread_words = {"warp", "weft", "bias"};
 struct PointKeys {
   std::vector<Vec2> points;
   std::string file;
-  Place file_place;
 };
 
 struct Unit {
@@ -68,8 +73,9 @@ void add_point_keys(schema::Table& table, const char* x, const char* y, std::spa
             for (const TomlValue& item : *given.array(k.name, "points [[x, y], …]")) {
               if (item.type != TomlValue::Type::array || item.items.size() != 2)
                 throw given.error(k.name, "a point of `points` is no pair of numbers", "give [[x, y], …]");
-              s.curve.points.emplace_back(to_number(item.items[0], "a number of `points`", ""),
-                                          to_number(item.items[1], "a number of `points`", ""));
+              const Range any = Range::between(-largest_measured, largest_measured);
+              s.curve.points.emplace_back(to_number(item.items[0], "a number of `points`", "", any),
+                                          to_number(item.items[1], "a number of `points`", "", any));
             }
           },
           [](const schema::Key&, const S&, TomlValue&) {})
@@ -80,7 +86,6 @@ void add_point_keys(schema::Table& table, const char* x, const char* y, std::spa
                            [](const schema::Key& k, const TomlTable& given, S& s) {
                              s.curve.file = given.string(k.name);
                              schema::require_path(s.curve.file, k, given);
-                             s.curve.file_place = given.place(k.name);
                            },
                            [](const schema::Key&, const S&, TomlValue&) {})
                            .means("in place of `points`: a text file with two columns"));
@@ -130,10 +135,18 @@ Place take_points(const TomlTable& table, Stated<Test>& s, const Measurements& m
   return place;
 }
 
-void require_force(const std::vector<Vec2>& points, const Place& place, const std::string& title) {
-  if (!points.empty() && points.back()[0] > 0 && points.back()[1] > 0) return;
-  throw Error(ErrorKind::input, place, title + " has no force at its last point",
-              "give points up to a force");
+/// Checks the force over `x` at the last point: outside of these ranges, of all fabrics, a unit is wrong.
+void require_modulus(const std::vector<Vec2>& points, const Place& place, const std::string& title,
+                     double x_scale, const Range& range, const char* unit) {
+  const double x = points.empty() ? 0 : points.back()[0] * x_scale, y = points.empty() ? 0 : points.back()[1];
+  if (x <= 0 || y <= 0)
+    throw Error(ErrorKind::input, place, fmt::format("{} has no force at its last point", title),
+                "give points up to a force");
+  if (!fits(y / x, range))
+    throw Error(ErrorKind::input, place,
+                fmt::format("{}: the last point means {:.3g} {}, which no fabric has", title, y / x, unit),
+                fmt::format("check the units of both numbers; fabrics have {:.3g} to {:.3g} {}", range.min,
+                            range.max, unit));
 }
 
 const schema::Table& tensile_table() {
@@ -173,15 +186,7 @@ void finish_tensile(const TomlTable& table, std::size_t, Stated<TensileTest>& s,
   const Place place = take_points(table, s, m, x, y);
   check_points(s.points, place, table.title(), 2,
                "give strains, elongation over length, or strain_unit = \"%\" or \"mm\"");
-  require_force(s.points, place, table.title());
-  // Aramids reach 1e6 N/m, the softest knits 5 N/m.
-  const double secant = s.points.back()[1] / s.points.back()[0];
-  if (secant < 0.5 || secant > 5e6)
-    throw Error(
-        ErrorKind::input, place,
-        fmt::format("{}: {:.4g} N/m at a strain of {:.4g} is a modulus of {:.3g} N/m, which no fabric has",
-                    table.title(), s.points.back()[1], s.points.back()[0], secant),
-        "check `force_unit` and `strain_unit`");
+  require_modulus(s.points, place, table.title(), 1, {0.5, 5e6, false}, "N/m");
 }
 
 const schema::Table& shear_table() {
@@ -191,7 +196,7 @@ const schema::Table& shear_table() {
         "[[shear]]", {schema::text("name", &S::name).otherwise("none").means("of the specimen, in messages"),
                       measured("modulus", &S::modulus)
                           .unit("N/m")
-                          .range({0.1, 1e6, false})
+                          .range(shear_moduli)
                           .excludes("points", "`modulus` stands beside `points`")
                           .excludes("file", "`modulus` stands beside `file`")
                           .means("force per length and radian at rest, in place of points")});
@@ -204,7 +209,7 @@ const schema::Table& shear_table() {
 void finish_shear(const TomlTable& table, std::size_t, Stated<ShearTest>& s, const Measurements& m) {
   const Place place = take_points(table, s, m, scale_of(s.x_unit, angles), scale_of(s.y_unit, shear_forces));
   check_points(s.points, place, table.title(), 60, "leave out angles past the locking of the threads");
-  if (!s.modulus) require_force(s.points, place, table.title());
+  if (!s.modulus) require_modulus(s.points, place, table.title(), 1 / radian, shear_moduli, "N/m");
 }
 
 const schema::Table& bending_table() {
@@ -234,7 +239,7 @@ const schema::Table& bending_table() {
              .means("the ends of the strip in the grip point up, to each other, or down"),
          measured("rigidity", &S::rigidity)
              .unit("N·m")
-             .range({1e-8, 0.1, false})
+             .range(rigidities)
              .means("moment per width and curvature")});
     add_point_keys<BendingTest>(t, "curvature", "moment", curvatures, moments);
     return t;
@@ -253,7 +258,7 @@ void finish_bending(const TomlTable& table, std::size_t, Stated<BendingTest>& s,
         "give one of `bending_length`, `loop_height`, `rigidity`, `points`, `file`, and a [[bending]] for "
         "each");
   if (s.points.empty()) return;
-  require_force(s.points, place, table.title());
+  require_modulus(s.points, place, table.title(), 1, rigidities, "N·m");
   if (s.direction == Thread::bias)
     throw Error(ErrorKind::input, place, "a material has no curve of moments along the bias",
                 "give `rigidity`, the slope at rest");
@@ -328,7 +333,7 @@ DrapeTest finish_drape(const TomlTable& table, const StatedDrape& s, const Measu
   for (const std::string& name : s.outlines) {
     const std::filesystem::path file = m.file.parent_path() / name;
     const double area = enclosed_area(read_points(file)) * s.outline_unit * s.outline_unit;
-    const double share = (area * 4 / 3.14159265358979323846 - disc) / (whole - disc);
+    const double share = (area * 4 / std::numbers::pi - disc) / (whole - disc);
     if (share <= 0 || share > 1)
       throw Error(
           ErrorKind::input, Place{file.string(), 0, 0},
@@ -488,7 +493,11 @@ const schema::Table& measurements_table() {
 }
 
 Measurements read_measurements(const std::filesystem::path& file) {
-  const TomlValue root = parse_toml(read_text(file), file.string());
+  return parse_measurements(read_text(file), file);
+}
+
+Measurements parse_measurements(std::string_view text, const std::filesystem::path& file) {
+  const TomlValue root = parse_toml(text, file.string());
   const TomlTable top = measurements_table().open(root, "the file of measurements");
   Measurements m;
   m.file = file;

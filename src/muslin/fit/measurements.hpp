@@ -1,7 +1,6 @@
 // Measurements are what a laboratory has measured of a fabric, as a file of measurements states it.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -27,7 +26,7 @@ struct Measured {
 
 enum class Thread { warp, weft, bias };
 
-/// Strip tests of one specimen: (strain, force per width [N/m]), the strains ascending.
+/// A strip test of one specimen: (strain, force per width [N/m]), the strains ascending.
 struct TensileTest {
   std::string name;
   Thread direction = Thread::warp;
@@ -116,6 +115,7 @@ const schema::Table& measurements_table();
 /// Reads a file of measurements (docs/guide/fitting.md). Files that it names are relative to it. Errors:
 /// file; input with file, line and column.
 Measurements read_measurements(const std::filesystem::path& file);
+Measurements parse_measurements(std::string_view text, const std::filesystem::path& file);
 
 /// Calls visit(measured) for every measured number and every factor of a curve, in a fixed order.
 void for_each_measured(Measurements& m, const std::function<void(Measured&)>& visit);

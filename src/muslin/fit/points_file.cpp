@@ -1,5 +1,6 @@
 #include "muslin/fit/points_file.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -31,7 +32,8 @@ std::vector<std::string_view> words_of(std::string_view line) {
 std::optional<double> number_of(std::string_view word) {
   double x = 0;
   const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), x);
-  if (status != std::errc() || end != word.data() + word.size() || !std::isfinite(x)) return std::nullopt;
+  if (status != std::errc() || end != word.data() + word.size() || !(std::abs(x) <= largest_measured))
+    return std::nullopt;
   return x;
 }
 

@@ -8,6 +8,8 @@
 
 namespace muslin {
 
+inline constexpr double largest_measured = 1e9;  ///< larger numbers are refused
+
 /// Returns the rows of a text file of two numbers each, separated by commas, semicolons, tabs or blanks.
 /// Lines before the first number (titles of columns), empty lines and those that begin with # are skipped.
 /// Errors: file; input with the line.

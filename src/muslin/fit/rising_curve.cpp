@@ -16,10 +16,10 @@ constexpr int corrections = 8;        // for the curve between the points, which
 
 /// Up to most_points of the distinct x, so that the same number of them lies between each two.
 std::vector<double> spread_points(const std::vector<Vec2>& data) {
+  const double apart = 1e-3 * data.back()[0];
   std::vector<double> distinct;
   for (const Vec2& point : data)
-    if (point[0] > 0 && (distinct.empty() || point[0] > distinct.back() * (1 + 1e-9)))
-      distinct.push_back(point[0]);
+    if (point[0] > (distinct.empty() ? 0 : distinct.back()) + apart) distinct.push_back(point[0]);
   const std::size_t count = std::min(distinct.size(), static_cast<std::size_t>(StressCurve::most_points));
   std::vector<double> chosen;
   for (std::size_t k = 1; k <= count; ++k) chosen.push_back(distinct[k * distinct.size() / count - 1]);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
@@ -104,7 +105,7 @@ void hold_strips(Measurements& m, const Inversion& inversion) {
   const double shear =
       shear_modulus != nullptr
           ? shear_modulus->value
-          : StressCurve(*find_value(inversion, "shear_curve")->curve).slope(0) * 180 / 3.14159265358979323846;
+          : StressCurve(*find_value(inversion, "shear_curve")->curve).slope(0) * 180 / std::numbers::pi;
   const auto share = [&](Thread direction, double width, double length) {
     const bool along_warp = direction == Thread::warp;
     return held_share(width, length, {along_warp ? warp : weft, along_warp ? weft : warp, shear, poisson});
