@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "support/sheet.hpp"
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -113,6 +114,37 @@ TEST_F(ShellModel, RestMeshHasNoStress) {
   EXPECT_NEAR(bent.potentials[1].potential->value(bent.rest_positions), 0, 1e-20);
   EXPECT_THAT(message(body("bent.obj", "rest_mesh = 'other.obj'\n")),
               testing::AllOf(HasSubstr("scene.toml:6:13"), HasSubstr("its polygons are not those of")));
+}
+
+TEST_F(ShellModel, InvertedTrianglesAreAWarning) {
+  Mesh turned = test::flat_sheet(4, 4, 0.4, 0.4);
+  turned.positions[12].x() = 0.33;
+  write_mesh(folder() / "turned.obj", turned);
+  EXPECT_THAT(build(body("turned.obj")).warnings,
+              testing::ElementsAre(HasSubstr("turned over in the stress-free shape, the first in polygon")));
+}
+
+TEST_F(ShellModel, LongEdgesAreAWarningIfTheMembraneLocks) {
+  write_mesh(folder() / "fine.obj", test::flat_sheet(20, 20, 0.3, 0.3));
+  const auto of = [](const std::string& material) {
+    return "[[body]]\nname = 'cloth'\nmesh = 'fine.obj'\nmodel = 'shell'\nwarp = [1, 0, 0]\nmaterial = " +
+           material;
+  };
+  EXPECT_THAT(build(of("'denim'")).warnings, testing::IsEmpty());
+  EXPECT_THAT(build(of("'canvas'")).warnings, testing::IsEmpty());
+  const Model silk = build(of("'silk'"));
+  ASSERT_THAT(silk.warnings,
+              testing::ElementsAre(HasSubstr("silk drapes too stiffly with more than 0.0056 m")));
+  // What the warning advises removes it.
+  const std::string& warning = silk.warnings[0];
+  const double softer = std::stod(warning.substr(warning.find("`membrane_weft` to ") + 19));
+  const std::string membrane = fmt::format("membrane_warp = {}, membrane_weft = {}", softer, softer);
+  EXPECT_THAT(build(of("{ base = 'silk', " + membrane + " }\nstretch_limit = 1.05")).warnings,
+              testing::IsEmpty());
+  const auto json = nlohmann::json::parse(describe_json(silk));
+  EXPECT_NEAR(json["bodies"][0]["trusted_edge"].get<double>(), 0.00556, 1e-5);
+  EXPECT_EQ(json["warnings"].size(), 1u);
+  EXPECT_THAT(describe_text(silk), HasSubstr("as the fabric's with edges of up to 0.0056 m"));
 }
 
 TEST_F(ShellModel, WarpRotatesWithTheBody) {

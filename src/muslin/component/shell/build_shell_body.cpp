@@ -1,15 +1,23 @@
 #include <algorithm>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/placement.hpp"
 #include "muslin/component/shell/shell_body.hpp"
+#include "muslin/component/shell/trusted_edge.hpp"
+#include "muslin/core/counted.hpp"
+#include "muslin/material/measured_sheet.hpp"
+#include "muslin/shell/inverted_triangles.hpp"
 
 namespace muslin {
 namespace {
+
+constexpr double folding_size = 8;       // cloth of fewer edges has no folds
+constexpr double least_stiffness = 100;  // of a membrane, over mass per area and size [m/s²]
 
 class ShellBuilder {
  public:
@@ -84,12 +92,44 @@ class ShellBuilder {
           "another `warp`",
           body_.shell.odd_faces));
     }
+    warn_of_inverted_triangles(rest);
+    warn_of_long_edges();
     body_.skin = identity_embedding(body_.mesh.vertex_count());
     body_.vertex_count = static_cast<int>(body_.mesh.vertex_count());
     BodyStatistics& s = body_.statistics;
     s.vertices = body_.vertex_count;
     s.triangles = static_cast<std::int64_t>(body_.shell.triangles.size());
     s.hinges = static_cast<std::int64_t>(body_.shell.hinges.size());
+  }
+
+  void warn_of_inverted_triangles(const Mesh& rest) {
+    const std::vector<int> inverted = inverted_triangles(body_.shell.triangles, rest.positions);
+    if (inverted.empty()) return;
+    say(fmt::format(
+        "{} turned over in the stress-free shape, the first in polygon {}; move {} back in the modeller",
+        counted(inverted.size(), "triangle is", "triangles are"),
+        body_.shell.faces[static_cast<std::size_t>(inverted.front())] + 1,
+        inverted.size() == 1 ? "its vertex" : "their vertices"));
+  }
+
+  /// Warns where the membrane is what limits the length of edges: all coarse meshes miss folds, but then they
+  /// hang too softly, as users expect.
+  void warn_of_long_edges() {
+    const ShellMaterial& m = *settings_.material.shell;
+    const TrustedEdge trusted = trusted_edge(m);
+    const double edge = body_.shell.mean_edge, size = body_.mesh.bounds().sizes().maxCoeff();
+    if (trusted.unlocked >= trusted.resolved || edge <= trusted.unlocked || size < folding_size * edge)
+      return;
+    std::string remedy = "refine the mesh";
+    // A softer membrane must still carry the cloth.
+    const double softer = unlocked_stiffness(m, edge);
+    if (softer > least_stiffness * m.areal_density * size && !has_curves(m))
+      remedy += fmt::format(
+          ", or set `membrane_warp` and `membrane_weft` to {:.2g} and a `stretch_limit` of 1.05", softer);
+    say(fmt::format(
+        "its edges are {:.2g} m long on average; {} drapes too stiffly with more than {:.2g} m, because "
+        "folds across edges stretch the membrane; {}",
+        edge, settings_.material.name, trusted.unlocked, remedy));
   }
 
   const BodySettings& settings_;

@@ -10,6 +10,7 @@
 
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/description.hpp"
+#include "muslin/component/shell/trusted_edge.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/hash.hpp"
@@ -123,6 +124,7 @@ std::string ShellBody::description_json() const {
   json["hinges"] = s.hinges;
   json["area"] = shell.area;
   json["mean_edge"] = shell.mean_edge;
+  json["trusted_edge"] = trusted_edge(*settings.material.shell).length();
   if (own().stretch_limit) json["stretch_limit"] = *own().stretch_limit;
   json["warp"] = own().warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
   json["material"] = settings.material.name;
@@ -157,6 +159,9 @@ std::string ShellBody::description() const {
   if (has_bending_friction(m))
     text += fmt::format("  friction    of bending, up to warp {:.3g}, weft {:.3g} N within {:.3g}/m\n",
                         m.bending_friction_warp, m.bending_friction_weft, m.bending_friction_curvature);
+
+  if (const double edge = trusted_edge(m).length(); edge > 0)
+    text += fmt::format("  drape       as the fabric's with edges of up to {:.2g} m\n", edge);
   if (own().stretch_limit)
     text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *own().stretch_limit);
   return text;

@@ -1,0 +1,64 @@
+// The edge length up to which a mesh drapes as the fabric does.
+#include "muslin/component/shell/trusted_edge.hpp"
+
+#include <cmath>
+
+#include "support/sheet.hpp"
+#include <gtest/gtest.h>
+
+#include "muslin/energy/membrane_energy.hpp"
+#include "muslin/material/material.hpp"
+#include "muslin/shell/shell.hpp"
+
+namespace muslin {
+namespace {
+
+ShellMaterial sheet(double stiffness, double bending) {
+  ShellMaterial m;
+  m.areal_density = 0.1;
+  m.membrane_warp = m.membrane_weft = stiffness;
+  m.membrane_shear = stiffness / 2;
+  m.bending_warp = m.bending_weft = m.bending_bias = bending;
+  return m;
+}
+
+TEST(TrustedEdge, HasTheMembraneAtSixteenTimesTheEnergyOfBending) {
+  const ShellMaterial m = sheet(1e8, 1e-5);
+  const double h = trusted_edge(m).unlocked, radius = 2 * trusted_edge(m).resolved;
+  EXPECT_NEAR(radius, std::cbrt(1e-5 / 0.981), 1e-12);
+  ASSERT_LT(h, radius / 10);
+  const int cells = 8;
+  const Mesh mesh = test::flat_sheet(cells, cells, cells * h, cells * h);
+  const Shell shell = build_shell(mesh, mesh.positions, {Vec3(1, 0, 0)});
+  const std::vector<Vec3> fold = test::rolled(mesh.positions, 1 / radius);
+  const double stretched =
+      MembraneEnergy(shell, {m.membrane_warp, m.membrane_weft, m.membrane_shear, 0}).value(fold);
+  const double bent = 0.5 * m.bending_warp / (radius * radius) * shell.area;
+  EXPECT_NEAR(stretched / bent, 16, 0.3);
+}
+
+TEST(TrustedEdge, IsLimitedByFoldsIfTheSheetIsThick) {
+  const TrustedEdge thick = trusted_edge(sheet(1e4, 1e-3)), thin = trusted_edge(sheet(1e4, 1e-6));
+  EXPECT_EQ(thick.length(), thick.resolved);
+  EXPECT_EQ(thin.length(), thin.unlocked);
+  EXPECT_NEAR(thin.unlocked / thick.unlocked, std::pow(1e-3, 5.0 / 12), 1e-9);
+}
+
+TEST(TrustedEdge, OfFabricsIsLongestForStiffOnes) {
+  const auto edge = [](const char* name) { return trusted_edge(*find_material(name).shell).length(); };
+  EXPECT_NEAR(edge("silk"), 0.00556, 1e-5);
+  EXPECT_GT(edge("denim"), 2 * edge("silk"));
+  EXPECT_GT(edge("canvas"), edge("denim"));
+}
+
+TEST(TrustedEdge, IsUnlockedByASofterMembrane) {
+  const ShellMaterial stiff = sheet(1e6, 1e-5);
+  const double softer = unlocked_stiffness(stiff, 0.01);
+  EXPECT_LT(softer, 1e6);
+  EXPECT_NEAR(trusted_edge(sheet(softer, 1e-5)).unlocked, 0.01, 1e-12);
+  EXPECT_TRUE(std::isinf(trusted_edge(sheet(0, 1e-5)).unlocked));
+  EXPECT_EQ(trusted_edge(sheet(1e6, 0)).length(), 0);
+}
+
+}  // namespace
+}  // namespace muslin
