@@ -27,14 +27,16 @@ std::string summary(const RunReport& report) {
 void report(const ReportArguments& a) {
   namespace fs = std::filesystem;
   listen_for_interrupts();
-  const bool json_is_printed = a.json == "-";
+  const bool json_is_printed = a.json == "-", junit_is_printed = a.junit == "-";
+  if (json_is_printed && junit_is_printed)
+    throw Error(ErrorKind::usage, "--json and --junit cannot both be printed", "name a file for one of them");
   ReportFiles files;
   files.page = a.page.empty() ? fs::path(a.run) / "report.html" : fs::path(a.page);
   if (files.page.extension() != ".html" && files.page.extension() != ".htm")
     throw Error(ErrorKind::usage, {files.page.string()}, "a page must end in .html", "name it PAGE.html");
   if (!json_is_printed)
     files.json = a.json.empty() ? fs::path(files.page).replace_extension(".json") : fs::path(a.json);
-  files.junit = a.junit;
+  if (!junit_is_printed) files.junit = a.junit;
   files.pictures = !a.no_pictures;
   const RunReader run(a.run);
   ProgressLine line(a.quiet);
@@ -42,6 +44,8 @@ void report(const ReportArguments& a) {
   line.finish();
   if (json_is_printed) {
     print(report_json(run, made).dump(2) + "\n");
+  } else if (junit_is_printed) {
+    print(report_junit(made));
   } else if (!a.quiet) {
     std::string text = summary(made);
     for (const fs::path& file : {files.page, files.json, files.junit})
@@ -65,7 +69,7 @@ void add_report(CLI::App& program) {
   command->add_option("-o,--output", a->page, "PAGE.html (default: RUN/report.html)");
   command->add_option("--json", a->json,
                       "FILE for programs, - to print it (default: PAGE.json beside the page)");
-  command->add_option("--junit", a->junit, "FILE.xml of test results, for pipelines");
+  command->add_option("--junit", a->junit, "FILE.xml of test results, for pipelines; - to print it");
   command->add_flag("--strict", a->strict, "exit code 4 if a promise is broken");
   command->add_flag("--no-pictures", a->no_pictures, "a page without pictures, sooner");
   command->add_flag("--quiet", a->quiet, "no progress, no summary");

@@ -25,7 +25,8 @@ TEST(ReportCommand, WritesPageAndJsonIntoTheRun) {
   const Outcome outcome =
       run(scratch, {"report", flag, "--no-pictures", "--junit", (scratch / "out.xml").string()});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("kept          The run is complete: 3 of 3 frames are there."));
+  EXPECT_THAT(outcome.out, HasSubstr("kept          The run is complete: 3 of 3 frames are there, "));
+  EXPECT_THAT(outcome.out, HasSubstr(", as `--frames 2` asked.\n"));
   EXPECT_THAT(outcome.out, HasSubstr("report.html\n"));
   EXPECT_THAT(bytes_of(scratch / "flag/report.html"), HasSubstr("Thesis experiment 2"));
   EXPECT_EQ(nlohmann::json::parse(bytes_of(scratch / "flag/report.json"))["run"]["frames"], 3);
@@ -41,6 +42,17 @@ TEST(ReportCommand, PrintsJsonAlone) {
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["promises"].size(), 10u);
   EXPECT_TRUE(std::filesystem::exists(page));
   EXPECT_FALSE(std::filesystem::exists(scratch / "page.json"));
+}
+
+TEST(ReportCommand, PrintsTestResultsAlone) {
+  Scratch scratch;
+  const std::string flag = flag_run(scratch);
+  const Outcome outcome = run(scratch, {"report", flag, "--junit", "-", "--no-pictures", "--quiet"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::StartsWith("<?xml"));
+  EXPECT_THAT(outcome.out, testing::EndsWith("</testsuites>\n"));
+  EXPECT_FALSE(std::filesystem::exists("-"));
+  EXPECT_EQ(run(scratch, {"report", flag, "--junit", "-", "--json", "-", "--no-pictures"}).code, 2);
 }
 
 TEST(ReportCommand, StrictMakesABrokenPromiseAnError) {

@@ -99,7 +99,7 @@ TEST(RunReport, TracesTheNumbersOfFabrics) {
   EXPECT_THAT(bending["meaning"], HasSubstr("when warp bends"));
   EXPECT_EQ(bending["origin"], "from the material library");
   EXPECT_TRUE(bending["guess"]);
-  EXPECT_FALSE(number(library, "membrane_warp")["guess"]);
+  EXPECT_FALSE(number(library, "poisson")["guess"]);
   EXPECT_EQ(number(library, "mass_damping")["origin"], "derived or default");
 
   std::string body = test::sheet_body;
@@ -116,6 +116,24 @@ TEST(RunReport, TracesTheNumbersOfFabrics) {
   EXPECT_EQ(other["material"], "silk");
   EXPECT_EQ(number(other, "areal_density")["value"], 0.06);
   EXPECT_EQ(number(other, "areal_density")["origin"], "from the material library");
+}
+
+TEST(RunReport, OpensAMaterialFileBesideTheScene) {
+  Scratch scratch;
+  test::write_bytes(scratch / "linen.toml",
+                    "source = \"a mill\"\nguesses = [\"shell.poisson\"]\n[shell]\nareal_density = 0.2\n"
+                    "membrane_warp = 500\npoisson = 0.3\nbending_warp = 1e-5\n");
+  std::string body = test::sheet_body;
+  body.replace(body.find("\"cotton\""), 8, "\"linen.toml\"");
+  const auto run = run_sheet(scratch, test::ball_and_floor + test::gravity, body);
+  const Json fabric = json_of(run)["fabrics"][0];
+  EXPECT_EQ(fabric["source"], "a mill");
+  EXPECT_EQ(number(fabric, "membrane_warp")["origin"], "from the material file");
+  EXPECT_TRUE(number(fabric, "poisson")["guess"]);
+  EXPECT_FALSE(number(fabric, "membrane_warp")["guess"]);
+  std::filesystem::remove(scratch / "linen.toml");
+  EXPECT_EQ(number(json_of(run)["fabrics"][0], "membrane_warp")["origin"],
+            "from a material file that was not found again, or derived");
 }
 
 TEST(RunReport, FindsASheetThatCrossesItself) {

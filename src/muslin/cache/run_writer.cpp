@@ -415,6 +415,7 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
   if (simulation.options().allow_tangled) run["allow_tangled"] = true;
   run["contact"] = model.contact ? contact_record_json(*model.contact) : Json();
   run["scene"] = parsed_scene(model);
+  run["scene_file"] = fs::absolute(model.scene.file).lexically_normal().string();
   run["machine"] = {{"processor", processor()},
                     {"cores", std::thread::hardware_concurrency()},
                     {"threads", thread_count()},

@@ -7,9 +7,9 @@
 
 namespace muslin {
 
-/// Energies in joule. Every joule that leaves one account (kinetic, elastic, potential, supplied by work,
-/// dissipated) enters another, so the energy turned over is half the sum of the changes of all accounts from
-/// frame to frame.
+/// Energies in joule. The energy turned over is what the scene brings into motion: the kinetic energy at the
+/// start, the elastic energy released from it, the range of potential energy, and the range of work. Exchange
+/// between kinetic and elastic energy does not count, or a trembling cloth would excuse its own defects.
 struct EnergyTurnover {
   double turned_over = 0;
   double unbalanced = 0;  ///< the largest work of residuals since the start, by magnitude

@@ -28,8 +28,7 @@ struct WrittenScene {
   Json resolved;  ///< null if the scene cannot be read here, as its material files are elsewhere
 };
 
-WrittenScene read_written(const RunReader& run, const std::string& text) {
-  const std::filesystem::path file = run.directory() / "scene.toml";
+WrittenScene read_written(const std::string& text, const std::filesystem::path& file) {
   WrittenScene written;
   try {
     written.text = parse_toml(text, file.string());
@@ -73,11 +72,11 @@ MaterialFile open_material(bool in_library, std::string_view text, const std::st
 
 /// Finds the file of the material that the run names, or that its scene names by a path; nothing for a table
 /// without a base, or a file that is not there any more.
-std::optional<MaterialFile> find_file(const RunReader& run, const std::string& name,
+std::optional<MaterialFile> find_file(const std::filesystem::path& folder, const std::string& name,
                                       const std::string& written_name) {
   try {
     if (written_name.ends_with(".toml")) {
-      const std::filesystem::path path = run.directory() / written_name;
+      const std::filesystem::path path = folder / written_name;
       return open_material(false, read_text(path), path.string());
     }
     for (const LibraryMaterial& material : material_library())
@@ -135,7 +134,8 @@ class Tracer {
   bool by_path_;
 };
 
-Fabric trace(const RunReader& run, const Json& body, const Json& reread, const TomlValue* written) {
+Fabric trace(const std::filesystem::path& folder, const Json& body, const Json& reread,
+             const TomlValue* written) {
   const Json& material = body["material"];
   Fabric fabric;
   fabric.body = body.value("name", "");
@@ -143,7 +143,7 @@ Fabric trace(const RunReader& run, const Json& body, const Json& reread, const T
   fabric.material = material.value("name", "");
   const bool shell = fabric.model == "shell";
   const std::string written_name = name_in(written);
-  std::optional<MaterialFile> file = find_file(run, fabric.material, written_name);
+  std::optional<MaterialFile> file = find_file(folder, fabric.material, written_name);
   if (file) {
     fabric.description = file->words("description");
     fabric.source = file->words("source");
@@ -184,16 +184,17 @@ const char* name_of(NumberOrigin origin) {
   return "";
 }
 
-std::vector<Fabric> trace_fabrics(const RunReader& run, const std::string& scene_text) {
+std::vector<Fabric> trace_fabrics(const RunReader& run, const std::string& scene_text,
+                                  const std::filesystem::path& scene_file) {
   const Json recorded = Json::parse(run.resolved_scene(), nullptr, false);
   const Json& bodies = json_list(recorded, "body");
-  const WrittenScene written = read_written(run, scene_text);
+  const WrittenScene written = read_written(scene_text, scene_file);
   const Json& reread = json_list(written.resolved, "body");
   std::vector<Fabric> fabrics;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].is_object() || !bodies[b].value("material", Json()).is_object()) continue;
     const Json before = b < reread.size() ? reread[b].value("material", Json()) : Json();
-    fabrics.push_back(trace(run, bodies[b], before, written_material(written, b)));
+    fabrics.push_back(trace(scene_file.parent_path(), bodies[b], before, written_material(written, b)));
   }
   return fabrics;
 }

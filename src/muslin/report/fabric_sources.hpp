@@ -1,6 +1,7 @@
 // Traces every number of a run's materials to its source.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,9 @@ namespace muslin {
 enum class NumberOrigin {
   library,  ///< a material that comes with muslin
   file,     ///< a material file of the user
-  unread,  ///< a material file that cannot be read from the run's folder, or derived; its guesses are unknown
-  scene,   ///< written in the scene file
+  unread,   ///< a material file that cannot be read from the scene's folder, or derived; its guesses are
+            ///< unknown
+  scene,    ///< written in the scene file
   changed,  ///< not set in the scene file but by --set or by a program
   derived,  ///< follows from other numbers, or a default
 };
@@ -38,7 +40,8 @@ struct Fabric {
 };
 
 /// Returns one per body of the scene. Parts that cannot be read, such as a scene of another version, are left
-/// out; `scene_text` is scene.toml of the run.
-std::vector<Fabric> trace_fabrics(const RunReader& run, const std::string& scene_text);
+/// out. `scene_text` is scene.toml of the run, a copy of `scene_file`, beside which its material files are.
+std::vector<Fabric> trace_fabrics(const RunReader& run, const std::string& scene_text,
+                                  const std::filesystem::path& scene_file);
 
 }  // namespace muslin

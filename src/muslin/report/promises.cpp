@@ -12,6 +12,7 @@
 #include "muslin/report/energy_turnover.hpp"
 #include "muslin/report/momentum_check.hpp"
 #include "muslin/report/quantity.hpp"
+#include "muslin/scene/scene.hpp"
 
 namespace muslin {
 namespace {
@@ -64,6 +65,17 @@ class Judge {
     return evidence_.has_step_columns;
   }
 
+  /// The frames that the scene's duration has, with frame 0; 0 if it is not recorded.
+  int frames_of_scene() const {
+    const Json scene = evidence_.summary.value("scene", Json::object());
+    const Json time = scene.value("time", Json::object());
+    if (!time.contains("duration") || !time.contains("frame_rate")) return 0;
+    TimeSettings settings;
+    settings.duration = time["duration"].get<double>();
+    settings.frame_rate = time["frame_rate"].get<double>();
+    return settings.frames() + 1;
+  }
+
   Promise complete() const {
     Promise p = promise("complete", "The run is complete", "every frame from the first to the last");
     const int last = run_.last_frame(), frames = run_.frame_count();
@@ -80,7 +92,10 @@ class Judge {
       joined = joined && session.value("from_frame", 0) <= end;
       end = session.value("to_frame", 0);
     }
-    const std::string counts = fmt::format("{} of {} frames are there", frames, last + 1);
+    std::string counts = fmt::format("{} of {} frames are there", frames, last + 1);
+    if (const int of_scene = frames_of_scene(); last + 1 < of_scene)
+      counts += fmt::format(", {:.0f} % of the scene's {}, as `--frames {}` asked",
+                            100.0 * (last + 1) / of_scene, of_scene, last);
     if (run_.status() == RunStatus::running && evidence_.being_written) {
       p.finding = counts + "; the run is going on at this moment.";
       return p;

@@ -131,7 +131,9 @@ RunReport make_report(const RunReader& run, const Progress& progress) {
     report.title = title_of(run);
     report.evidence = examine(run, progress);
     report.promises = judge(run, report.evidence);
-    report.fabrics = trace_fabrics(run, report.evidence.scene_text);
+    const std::string copy = (run.directory() / "scene.toml").string();  // runs of earlier versions
+    report.fabrics =
+        trace_fabrics(run, report.evidence.scene_text, report.evidence.summary.value("scene_file", copy));
     report.energy = measure_turnover(run.diagnostics());
     return report;
   } catch (const Json::exception& error) {
