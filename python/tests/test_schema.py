@@ -46,11 +46,14 @@ SOUND = {
         {"name": "a", "mesh": "a.obj", "voxel_width": 0.1, "material": "rubber", "scale": [1, 2, 3]},
         {"mesh": "b.obj", "model": "shell", "material": {"base": "cotton", "poisson": 0.1}, "stretch_limit": 1.05},
         {"name": "c", "mesh": "b.obj", "model": "shell", "material": {"base": "cotton", "warp_curve": [[0, 0], [0.1, 9]]}},
+        {"name": "d", "mesh": "b.obj", "model": "shell", "material": {"base": "cotton", "weft_curve": [[0.01 * i, i] for i in range(11)]}},
     ],
     "collider": [{"shape": "sphere", "radius": 1, "density": 2}],
     "pin": [{"body": "a", "where": {"nearest": [0, 0, 0]}, "keyframes": [{"time": 0}, {"time": 1}]}],
     "force": [{"type": "gravity"}, {"type": "wind", "velocity": [1, 0, 0]}],
 }
+
+ELEVEN = [[0.01 * i, i] for i in range(1, 12)]
 
 MISTAKES = [
     ("time", {"duraton": 2}),
@@ -66,6 +69,9 @@ MISTAKES = [
     ("body", [{"mesh": "a.obj", "model": "shell", "material": {"bending_warp": 1}}]),
     ("body", [{"mesh": "a.obj", "model": "shell", "material": {"base": "cotton", "warp_curve": [[0.1, 9, 1]]}}]),
     ("body", [{"mesh": "a.obj", "model": "shell", "material": {"base": "cotton", "warp_curve": [[-0.1, 9]]}}]),
+    ("body", [{"mesh": "a.obj", "model": "shell", "material": {"base": "cotton", "warp_curve": [[11, 9]]}}]),
+    ("body", [{"mesh": "a.obj", "model": "shell", "material": {"base": "cotton", "shear_curve": [[81, 9]]}}]),
+    ("body", [{"mesh": "a.obj", "model": "shell", "material": {"base": "cotton", "weft_curve": ELEVEN}}]),
     ("body", [{"mesh": "a.obj", "voxel_width": 1, "material": {"density": 1}}]),
     ("body", [{"mesh": "a.obj", "voxel_width": 1, "material": {"base": "rubber", "shear_modulus": 1}}]),
     ("body", [{"mesh": "", "voxel_width": 1, "material": "rubber"}]),

@@ -92,7 +92,12 @@ TEST(MaterialFile, SaysWhichNumbersAreGuesses) {
   EXPECT_FALSE(curves[1].guess);
   EXPECT_THAT(
       message("guesses = ['shell.poison']\n" + sheet),
-      HasSubstr("`shell.poison` in `guesses` is not a number of a material; did you mean `shell.poisson`?"));
+      HasSubstr(
+          "`shell.poison` in `guesses` is not a number of this material; did you mean `shell.poisson`?"));
+  EXPECT_THAT(message("guesses = ['shell.membrane_warp']\n" + sheet),
+              HasSubstr("is not a number of this material"));
+  EXPECT_THAT(message("guesses = ['lattice.density']\n" + sheet),
+              HasSubstr("is not a number of this material"));
 }
 
 TEST(MaterialFile, WrongFilesAreErrorsAtTheirPlace) {

@@ -76,8 +76,8 @@ TEST_F(MeasuredCloth, OneThreadMayBeMeasuredAndTheOtherNot) {
 
 TEST_F(MeasuredCloth, ChangesABaseAndIsChangedByIt) {
   const ShellMaterial curved = read("base = 'cotton', " + warp);
-  EXPECT_TRUE(curved.warp_curve);
-  EXPECT_FALSE(curved.weft_curve);
+  EXPECT_EQ(*curved.warp_curve, (MeasuredCurve{{0, 0}, {0.05, 10}, {0.1, 40}}));
+  EXPECT_EQ(curved.weft_curve, find_material("cotton").shell->weft_curve);
   const ShellMaterial set = read(weight + warp, {"body.cloth.material.weft_curve=[[0.1, 70]]"});
   EXPECT_EQ(*set.weft_curve, (MeasuredCurve{{0.1, 70}}));
 
@@ -87,6 +87,27 @@ TEST_F(MeasuredCloth, ChangesABaseAndIsChangedByIt) {
   EXPECT_FALSE(stiff.warp_curve);
   EXPECT_EQ(stiff.membrane_warp, 300);
   EXPECT_TRUE(stiff.weft_curve);
+}
+
+TEST_F(MeasuredCloth, AWeftAloneLacksAWarp) {
+  EXPECT_THAT(message(weight + "weft_curve = [[0.1, 20]]"), HasSubstr("[N/m], or `base` or `warp_curve`"));
+}
+
+TEST_F(MeasuredCloth, DerivesNumbersOfABaseAnew) {
+  const ShellMaterial cotton = *find_material("cotton").shell;
+  const ShellMaterial stiff = read("base = 'cotton', bending_warp = 1e-4, bending_weft = 1e-4");
+  EXPECT_DOUBLE_EQ(stiff.bending_bias, 1e-4);
+  EXPECT_EQ(stiff.membrane_shear, cotton.membrane_shear);    // that of cotton is measured
+  EXPECT_EQ(stiff.bending_damping, cotton.bending_damping);  // not that of stretch
+  EXPECT_EQ(read("base = 'cotton', bending_warp = 1e-4, bending_bias = 5e-5").bending_bias, 5e-5);
+  EXPECT_EQ(read("base = 'cotton', poisson = 0.1").bending_bias, cotton.bending_bias);
+
+  std::ofstream(folder() / "plain.toml")
+      << "[shell]\nareal_density = 0.2\nmembrane_warp = 100\nbending_warp = 1e-5\nstiffness_damping = 1e-3\n";
+  const ShellMaterial plain =
+      read("base = 'plain.toml', membrane_warp = 400, membrane_weft = 400, stiffness_damping = 2e-3");
+  EXPECT_DOUBLE_EQ(plain.membrane_shear, 400 / 2.5);
+  EXPECT_EQ(plain.bending_damping, 2e-3);
 }
 
 TEST_F(MeasuredCloth, ResolvedSceneHasTheCurveAndReadsBackAlike) {

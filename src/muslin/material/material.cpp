@@ -30,17 +30,10 @@ std::vector<MaterialNumber> numbers_in(const Material& material, const std::stri
 
 /// Reads the names of numbers that are not measured.
 void read_guesses(const schema::Key& key, const TomlTable& file, Material& material) {
-  std::vector<std::string> known;
-  for (const auto& [name, table] :
-       {std::pair{"lattice.", &lattice_material_table()}, std::pair{"shell.", &shell_material_table()}})
-    for (const std::string& number : table->names()) known.push_back(name + number);
   for (const TomlValue& item : *file.array(key.name, "keys such as [\"shell.poisson\"]")) {
     if (item.type != TomlValue::Type::string)
       throw file.error(key.name, "`guesses` has an item that is not a text",
                        "give keys such as \"shell.poisson\"");
-    if (std::find(known.begin(), known.end(), item.string) == known.end())
-      throw file.error(key.name, "`" + item.string + "` in `guesses` is not a number of a material",
-                       name_advice(item.string, known));
     material.guesses.push_back(item.string);
   }
 }
@@ -65,6 +58,18 @@ void read_reference(const schema::Key& key, const TomlTable& file, Material& mat
     material.reference.emplace_back(reference.keys[i],
                                     to_number(value, "`" + reference.keys[i] + "` of [reference]", ""));
   }
+}
+
+/// Guesses name numbers of this material, given or derived.
+void check_guesses(const TomlTable& file, const Material& material) {
+  std::vector<std::string> known;
+  for (const MaterialNumber& number : lattice_numbers(material)) known.push_back("lattice." + number.key);
+  for (const MaterialNumber& number : shell_numbers(material)) known.push_back("shell." + number.key);
+  for (const MaterialCurve& curve : shell_curves(material)) known.push_back("shell." + curve.key);
+  for (const std::string& guess : material.guesses)
+    if (std::find(known.begin(), known.end(), guess) == known.end())
+      throw file.error("guesses", fmt::format("`{}` in `guesses` is not a number of this material", guess),
+                       name_advice(guess, known));
 }
 
 /// A material file. The library writes none.
@@ -119,6 +124,7 @@ Material parse_material(std::string_view text, const std::string& file) {
         ErrorKind::input, Place{file, 0, 0}, "the material file has no table [lattice] or [shell]",
         "add [lattice] with density, edge_modulus, … or [shell] with areal_density, membrane_warp, …");
   }
+  check_guesses(top, material);
   return material;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "muslin/core/toml_table.hpp"
+#include "muslin/material/derive_anew.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/schema/declare.hpp"
 
@@ -39,6 +40,29 @@ double lowest_bias(double warp, double weft, double poisson) {
   return (warp + weft + 2 * poisson * std::sqrt(warp * weft)) / 4;
 }
 
+/// A number that follows from others unless it is given.
+struct DerivedNumber {
+  const char* key;
+  const char* curve;  ///< in its place, or the key again
+  double ShellMaterial::* value;
+  double (*derive)(const ShellMaterial&);
+};
+
+constexpr DerivedNumber derived_numbers[] = {
+    {"membrane_shear", "shear_curve", &ShellMaterial::membrane_shear,
+     [](const ShellMaterial& m) {
+       const SheetStress stress = stress_of(m);
+       return std::sqrt(stress.warp.slope(0) * stress.weft.slope(0)) / (2 * (1 + m.poisson));
+     }},
+    {"bending_bias", "bending_bias", &ShellMaterial::bending_bias,
+     [](const ShellMaterial& m) {
+       const SheetMoments moments = moments_of(m);
+       return bias_between(moments.warp.slope(0), moments.weft.slope(0));
+     }},
+    {"bending_damping", "bending_damping", &ShellMaterial::bending_damping,
+     [](const ShellMaterial& m) { return m.stiffness_damping; }},
+};
+
 /// Derives missing values from given ones.
 void complete(const TomlTable& table, ShellMaterial& m) {
   // A modulus takes the place of the base's curve.
@@ -55,19 +79,12 @@ void complete(const TomlTable& table, ShellMaterial& m) {
     m.weft_curve = m.warp_curve;
   }
   if (!table.has("poisson")) m.poisson = 0.25;
-  if (!table.has("membrane_shear") && !table.has("shear_curve")) {
-    const SheetStress stress = stress_of(m);
-    m.membrane_shear = std::sqrt(stress.warp.slope(0) * stress.weft.slope(0)) / (2 * (1 + m.poisson));
-  }
   if (!table.has("bending_weft") && !table.has("bending_weft_curve")) {
     m.bending_weft = m.bending_warp;
     m.bending_weft_curve = m.bending_warp_curve;
   }
-  if (!table.has("bending_bias")) {
-    const SheetMoments moments = moments_of(m);
-    m.bending_bias = bias_between(moments.warp.slope(0), moments.weft.slope(0));
-  }
-  if (!table.has("bending_damping")) m.bending_damping = m.stiffness_damping;
+  for (const DerivedNumber& number : derived_numbers)
+    if (!table.has(number.key) && !table.has(number.curve)) m.*number.value = number.derive(m);
 }
 
 void check_bias(const ShellMaterial& m, const schema::Subject& subject) {
@@ -218,6 +235,12 @@ schema::Table declared() {
 }
 
 }  // namespace
+
+void derive_anew(const TomlTable& given, const ShellMaterial& base, ShellMaterial& material) {
+  for (const DerivedNumber& number : derived_numbers)
+    if (!given.has(number.key) && !given.has(number.curve) && base.*number.value == number.derive(base))
+      material.*number.value = number.derive(material);
+}
 
 const schema::Table& shell_material_table() {
   static const schema::Table table = declared();

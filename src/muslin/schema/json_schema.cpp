@@ -27,6 +27,21 @@ Json list_schema(Json items, std::size_t count) {
   return json;
 }
 
+/// A curve may begin with the origin, which does not count among its points.
+Json curve_schema(const Key& key) {
+  const Json point = {
+      {"type", "array"},
+      {"prefixItems", {number_schema("number", key.range), {{"type", "number"}, {"minimum", 0}}}},
+      {"minItems", 2},
+      {"maxItems", 2}};
+  const Json origin = {
+      {"prefixItems", Json::array({{{"const", {0, 0}}}})}, {"minItems", 2}, {"maxItems", key.count + 1}};
+  return {{"type", "array"},
+          {"items", point},
+          {"minItems", 1},
+          {"anyOf", Json::array({Json{{"maxItems", key.count}}, origin})}};
+}
+
 Json type_schema(const Key& key, Type type) {
   switch (type) {
     case Type::number:
@@ -46,10 +61,7 @@ Json type_schema(const Key& key, Type type) {
     case Type::points:
       return list_schema(list_schema(number_schema("number", key.range), 3), key.count);
     case Type::curve:
-      return {{"type", "array"},
-              {"items", list_schema({{"type", "number"}, {"minimum", 0}}, 2)},
-              {"minItems", 1},
-              {"maxItems", key.count + 1}};
+      return curve_schema(key);
     case Type::table:
       return reference(key.table());
     case Type::tables:

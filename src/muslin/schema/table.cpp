@@ -20,14 +20,24 @@ void add_name(std::vector<std::string>& names, const std::string& name) {
 }
 
 /// Checks which keys are given beside which.
-void check_presence(const Key& key, const TomlTable& table) {
+/// ", or `a` or `b`": the keys that excuse the absence of `key`, of those that the table may have.
+std::string or_others(const Key& key, const std::vector<const Key*>& keys) {
+  std::string words;
+  for (const std::string& other : key.unless)
+    if (std::any_of(keys.begin(), keys.end(), [&](const Key* k) { return k->name == other; }))
+      words += fmt::format("{} `{}`", words.empty() ? ", or" : " or", other);
+  return words;
+}
+
+void check_presence(const Key& key, const std::vector<const Key*>& keys, const TomlTable& table) {
   if (!table.has(key.name)) {
     const bool excused = std::any_of(key.unless.begin(), key.unless.end(),
                                      [&](const std::string& other) { return table.has(other); });
     if (!key.required || excused) return;
-    throw Error(
-        ErrorKind::input, table.place(), fmt::format("{} has no `{}`", table.title(), key.name),
-        key.missing.empty() ? fmt::format("add `{} = …`, {}", key.name, described(key)) : key.missing);
+    throw Error(ErrorKind::input, table.place(), fmt::format("{} has no `{}`", table.title(), key.name),
+                key.missing.empty()
+                    ? fmt::format("add `{} = …`, {}{}", key.name, described(key), or_others(key, keys))
+                    : key.missing);
   }
   for (const Key::Need& need : key.needs) {
     if (!table.has(need.other))
@@ -149,8 +159,9 @@ void Table::read_erased(const TomlTable& table, void* settings) const {
   // The chooser first: it decides which keys there are.
   if (chooser != none && table.has(keys[chooser].name)) keys[chooser].read(keys[chooser], table, settings);
   const std::size_t variant = chosen ? chosen(settings) : 0;
-  for (const Key* key : keys_of(variant)) {
-    check_presence(*key, table);
+  const std::vector<const Key*> active = keys_of(variant);
+  for (const Key* key : active) {
+    check_presence(*key, active, table);
     if (table.has(key->name)) key->read(*key, table, settings);
   }
   if (complete) complete(table, settings);

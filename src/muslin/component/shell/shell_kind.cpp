@@ -4,6 +4,7 @@
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/geometry/inspect.hpp"
+#include "muslin/material/derive_anew.hpp"
 
 namespace muslin {
 namespace {
@@ -20,7 +21,7 @@ constexpr double low_stretch_limit = 1.005;
 /// `material` as a table.
 struct MaterialInput {
   std::string base;
-  ShellMaterial shell;
+  ShellMaterial base_shell, shell;  ///< of the base, and with the changes
 };
 
 const schema::Table& input_table() {
@@ -31,6 +32,11 @@ const schema::Table& input_table() {
              .means("a material by name or path that has `[shell]` numbers; the other keys "
                     "change it")});
     schema::include<MaterialInput>(input, &MaterialInput::shell, shell_material_table());
+    input.complete = [own = input.complete](const TomlTable& given, void* settings) {
+      own(given, settings);
+      auto& read = *static_cast<MaterialInput*>(settings);
+      if (given.has("base")) derive_anew(given, read.base_shell, read.shell);
+    };
     return input;
   }();
   return table;
@@ -58,7 +64,7 @@ Material read_table(const TomlTable& table, const BodySettings& /*body*/,
   MaterialInput input;
   if (table.has("base")) {
     material = base_material(material_use, table, folder);
-    input.shell = *material.shell;
+    input.base_shell = input.shell = *material.shell;
   }
   input_table().read(table, input);
   material.shell = input.shell;
