@@ -25,3 +25,10 @@ def names(model):
 
 def description(name):
     return next((m["description"] for m in materials() if m["name"] == name), "")
+
+
+def guesses(name, model):
+    """A sentence on which numbers of a material for the model, "shell" or "lattice", are not measured; "" if all are."""
+    listed = next((m["guesses"] for m in materials() if m["name"] == name), [])
+    words = [key.split(".")[1].replace("_", " ") for key in listed if key.startswith(model + ".")]
+    return f"Guesses, not measured: {', '.join(words)}" if words else ""

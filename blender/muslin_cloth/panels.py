@@ -134,6 +134,9 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
         about = fabrics.description(m.fabric)
         if about:
             paragraph(layout, about, context.region.width, "INFO")
+        guesses = fabrics.guesses(m.fabric, m.model.lower())
+        if guesses:
+            paragraph(layout, guesses, context.region.width, "QUESTION")
         layout.prop(m, "thickness")
         if m.model == "LATTICE":
             row = layout.row(align=True)

@@ -365,6 +365,14 @@ class Workers(Scratch):
         self.assertIn("rubber", fabrics.names("lattice"))
         self.assertTrue(fabrics.description("cotton"))
 
+    def test_guesses_of_a_fabric_are_told_for_its_model(self):
+        fabrics.program = PROGRAM
+        self.assertIn("bending warp", fabrics.guesses("cotton", "shell"))
+        self.assertNotIn("diagonal", fabrics.guesses("cotton", "shell"))
+        self.assertTrue(fabrics.guesses("steel", "lattice").startswith("Guesses, not measured: stiffness damping"))
+        self.assertEqual(fabrics.guesses("thesis_flag", "lattice"), "")
+        self.assertEqual(fabrics.guesses("no such fabric", "shell"), "")
+
 
 if __name__ == "__main__":
     unittest.main()
