@@ -59,6 +59,7 @@ material = "cotton"
 translate = [-0.5, 0, -0.5]
 [[pin]]
 body = "cloth"
+stretch_limit = 10
 where = { plane = { point = [-0.5, 0, 0], normal = [1, 0, 0] } }
 [[pin]]
 body = "cloth"

@@ -179,6 +179,7 @@ mesh = "strip.obj"
 rest_mesh = "rest.obj"
 model = "shell"
 material = "cotton"
+stretch_limit = 10
 )");
   const Vec3 start = centre(simulation, "strip");
   double farthest = 0;

@@ -127,12 +127,14 @@ name = "lower"
 mesh = "sheet"
 model = "shell"
 material = "wool"
+stretch_limit = 10
 translate = [-0.14, 0.105, -0.13]
 [[body]]
 name = "upper"
 mesh = "sheet"
 model = "shell"
 material = "cotton"
+stretch_limit = 10
 translate = [-0.16, 0.11, -0.16]
 rotate = [0, 10, 0]
 [[collider]]

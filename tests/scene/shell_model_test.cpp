@@ -192,6 +192,21 @@ TEST_F(ShellModel, StretchLimitIsASeparateTerm) {
               testing::ElementsAre(HasSubstr("take an implicit integrator")));
 }
 
+TEST_F(ShellModel, TheStretchLimitOfAMaterialIsThatOfItsBodies) {
+  const auto limit_of = [](const std::string& material, const std::string& more = "") {
+    return build("[[body]]\nname = 'cloth'\nmesh = 'sheet.obj'\nmodel = 'shell'\nmaterial = " + material +
+                 "\n" + more)
+        .bodies[0]
+        .stretch_limit();
+  };
+  EXPECT_EQ(limit_of("'cotton'"), 1.061);
+  EXPECT_EQ(limit_of("'wool'"), 1.085);
+  EXPECT_EQ(limit_of("'polyester'"), 1.065);
+  EXPECT_EQ(limit_of("'denim'"), std::nullopt);
+  EXPECT_EQ(limit_of("'cotton'", "stretch_limit = 1.2\n"), 1.2);
+  EXPECT_EQ(limit_of("{ base = 'cotton', stretch_limit = 1.1 }"), 1.1);
+}
+
 TEST_F(ShellModel, StretchLimitIsRefusedWithItsPlace) {
   for (const char* limit : {"1", "0.9", "1.0000000000000002", "1.0009", "10.1", "'5 %'"}) {
     EXPECT_THAT(message(body("sheet.obj", "stretch_limit = " + std::string(limit) + "\n")),

@@ -213,6 +213,10 @@ schema::Table declared() {
            .range({1e-3, 1e6, false})
            .shown_if<Sheet>(has_bending_friction)
            .means("change of curvature over which internal friction builds up"),
+       number("stretch_limit", &ShellMaterial::stretch_limit)
+           .range({least_stretch_limit, 10, false})
+           .means("largest stretch in any direction, as length over rest length, unless the body has a "
+                  "`stretch_limit` of its own"),
        number("mass_damping", &ShellMaterial::mass_damping)
            .unit("1/s")
            .range(sheet_damping)

@@ -159,7 +159,6 @@ std::string ShellBody::description() const {
   if (has_bending_friction(m))
     text += fmt::format("  friction    of bending, up to warp {:.3g}, weft {:.3g} N within {:.3g}/m\n",
                         m.bending_friction_warp, m.bending_friction_weft, m.bending_friction_curvature);
-
   if (const double edge = trusted_edge(m).length(); edge > 0)
     text += fmt::format("  drape       as the fabric's with edges of up to {:.2g} m\n", edge);
   if (own().stretch_limit)

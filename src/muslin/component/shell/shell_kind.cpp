@@ -11,10 +11,6 @@ namespace {
 
 using Own = ShellBodySettings;
 
-/// The stiffness of a limit grows as 1/(limit − 1) (energy/stretch_limit.hpp) without bound: a limit a
-/// rounding error above 1 asks for 1e16 times the weight of the cloth. At this one, a millimetre in a metre,
-/// it is five times that of low_stretch_limit, and the range in which it rises is still far above rounding.
-constexpr double least_stretch_limit = 1.001;
 /// Below this, products with blocks use double at usual resolutions, which is many times slower.
 constexpr double low_stretch_limit = 1.005;
 
@@ -88,6 +84,7 @@ const schema::Table& keys() {
        schema::number("stretch_limit", &Own::stretch_limit)
            .range({least_stretch_limit, 10, false})
            .may_change_on_resume()
+           .otherwise("that of the material, or none")
            .means("largest stretch of a triangle in any direction, as length over rest length; 1.05 allows "
                   "5 %")},
       {material_key(material_use)});
@@ -97,7 +94,8 @@ const schema::Table& keys() {
 void finish(const TomlTable& table, const std::filesystem::path& folder, BodySettings& body,
             std::vector<std::string>& warnings) {
   read_body_material(material_use, table, folder, body);
-  const std::optional<double>& limit = body.own.as<Own>().stretch_limit;
+  std::optional<double>& limit = body.own.as<Own>().stretch_limit;
+  if (!limit) limit = body.material.shell->stretch_limit;
   if (limit && *limit < low_stretch_limit) {
     warnings.push_back(fmt::format(
         "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",
