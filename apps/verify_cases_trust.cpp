@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "verify_case.hpp"
 #include "verify_experiment.hpp"
@@ -56,10 +59,10 @@ name = "cloth"
 mesh = "cloth.obj"
 model = "shell"
 material = "cotton"
+stretch_limit = 10
 translate = [-0.5, 0, -0.5]
 [[pin]]
 body = "cloth"
-stretch_limit = 10
 where = { plane = { point = [-0.5, 0, 0], normal = [1, 0, 0] } }
 [[pin]]
 body = "cloth"
@@ -313,6 +316,53 @@ keyframes = [{ time = 0 }, { time = 0.1, translate = [0, -1000, 0] }]
           {"energy over that of cloth as fast as the ball", 0, energy_over(struck, 6, carried), 10, false}};
 }
 
+std::vector<Comparison> high_friction() {
+  const Experiment experiment;
+  experiment.cube("cube.obj", 0.2, 4);
+  experiment.level_sheet("cloth.obj", 0.3, 0.3, 8);
+  const std::string floor = "[contact]\nfriction = 100\n[[collider]]\nname = \"floor\"\nshape = \"plane\"\n";
+  const std::vector<std::pair<const char*, const char*>> thrown = {{"soft cube", R"(
+[[body]]
+name = "cube"
+mesh = "cube.obj"
+voxel_width = 0.05
+bracing = "full"
+material = { density = 300, youngs_modulus = 5e4 }
+velocity = [2, 0, 0]
+rotate = [30, 20, 10]
+translate = [0, 0.3, 0]
+)"},
+                                                                   {"rigid cube", R"(
+[[collider]]
+name = "cube"
+shape = "mesh"
+mesh = "cube.obj"
+density = 300
+velocity = [2, 0, 0]
+rotate = [30, 20, 10]
+translate = [0, 0.3, 0]
+)"},
+                                                                   {"denim", R"(
+[[body]]
+name = "cloth"
+mesh = "cloth.obj"
+model = "shell"
+material = "denim"
+velocity = [2, 0, 0]
+rotate = [80, 10, 0]
+translate = [0, 0.33, 0]
+)"}};
+  std::vector<Comparison> numbers;
+  for (const auto& [name, body] : thrown) {
+    Simulation simulation = experiment.start(floor + body + weight);
+    Watch watch(simulation);
+    watch.advance(simulation, 12);
+    numbers.push_back({fmt::format("energy gained over energy of the fall, {}", name), 0,
+                       watch.gained() / watch.fallen(), 1e-3, false});
+  }
+  return numbers;
+}
+
 std::vector<Comparison> rigid_impact() {
   const Experiment experiment;
   std::vector<Comparison> numbers;
@@ -371,6 +421,8 @@ std::vector<VerifyCase> trust_cases() {
        held_back},
       {"trust-rigid-impact", "a ball of lead that falls on a box of foam brings no energy", "second law",
        false, rigid_impact},
+      {"trust-high-friction", "what is thrown on a floor of friction 100 gains no energy", "second law", true,
+       high_friction},
       {"trust-absurd", "what no one means ends in an error or in a finite result", "promise", true, absurd},
   };
   const std::vector<VerifyCase> motion = trust_motion_cases();
