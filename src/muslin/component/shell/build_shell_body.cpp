@@ -121,8 +121,8 @@ class ShellBuilder {
     if (trusted.unlocked >= trusted.resolved || edge <= trusted.unlocked || size < folding_size * edge)
       return;
     std::string remedy = "refine the mesh";
-    // A softer membrane must still carry the cloth.
-    const double softer = unlocked_stiffness(m, edge);
+    // A softer membrane must still carry the cloth; two digits may round up by a twentieth.
+    const double softer = 0.95 * unlocked_stiffness(m, edge);
     if (softer > least_stiffness * m.areal_density * size && !has_curves(m))
       remedy += fmt::format(
           ", or set `membrane_warp` and `membrane_weft` to {:.2g} and a `stretch_limit` of 1.05", softer);
