@@ -45,6 +45,12 @@ std::string row(const VerifyCase& c, const Comparison& number) {
       fmt::format("{:.2g}{}", scale * number.tolerance, unit), number.passed() ? "pass" : "FAIL", c.source);
 }
 
+std::string csv_row(const VerifyCase& c, const Comparison& number) {
+  return fmt::format("{},\"{}\",{:.17g},{:.17g},{:.17g},{:.17g},{},{},\"{}\"\n", c.name, number.quantity,
+                     number.reference, number.measured, number.deviation(), number.tolerance,
+                     number.relative ? "relative" : "absolute", number.passed() ? "pass" : "FAIL", c.source);
+}
+
 /// Returns the comparisons of the case; a run that the solver aborts gives one failed comparison.
 std::vector<Comparison> find(const VerifyCase& c) {
   try {
@@ -56,20 +62,21 @@ std::vector<Comparison> find(const VerifyCase& c) {
 }
 
 /// Returns the number of comparisons that failed.
-int verify(const std::vector<VerifyCase>& cases) {
-  print(fmt::format("{:<26} {:<44} {:>12} {:>12} {:>10} {:>10}  {}  {}\n", "test", "quantity", "reference",
-                    "measured", "deviation", "tolerance", "    ", "source"));
+int verify(const std::vector<VerifyCase>& cases, bool csv) {
+  print(csv ? "test,quantity,reference,measured,deviation,tolerance,kind,verdict,source\n"
+            : fmt::format("{:<26} {:<44} {:>12} {:>12} {:>10} {:>10}  {}  {}\n", "test", "quantity",
+                          "reference", "measured", "deviation", "tolerance", "    ", "source"));
   const auto begin = std::chrono::steady_clock::now();
   int count = 0, failed = 0;
   for (const VerifyCase& c : cases) {
     for (const Comparison& number : find(c)) {
-      print(row(c, number));
+      print(csv ? csv_row(c, number) : row(c, number));
       ++count;
       failed += number.passed() ? 0 : 1;
     }
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  print(fmt::format("{} of {} pass ({:.0f} s)\n", count - failed, count, seconds));
+  if (!csv) print(fmt::format("{} of {} pass ({:.0f} s)\n", count - failed, count, seconds));
   return failed;
 }
 
@@ -78,17 +85,18 @@ int verify(const std::vector<VerifyCase>& cases) {
 void add_verify(CLI::App& program) {
   struct Arguments {
     std::string test;
-    bool list = false;
+    bool list = false, csv = false;
   };
   auto* command =
       program.add_subcommand("verify", "compare simulations with closed forms and published numbers");
   auto a = std::make_shared<Arguments>();
   command->add_option("TEST", a->test, "a test, or the first word of several (default: all)");
+  command->add_flag("--csv", a->csv, "print comma-separated values with all digits");
   command->add_flag("--list", a->list, "list the tests");
   command->callback([a] {
     if (a->list) return print(list());
     // Ctrl-C ends the program at once: nothing is written that could be lost.
-    const int failed = verify(a->test.empty() ? verify_cases() : find_cases(a->test));
+    const int failed = verify(a->test.empty() ? verify_cases() : find_cases(a->test), a->csv);
     if (failed > 0)
       throw Error(ErrorKind::solver, fmt::format("{} of the numbers are out of tolerance", failed),
                   "see the lines with FAIL");

@@ -156,6 +156,9 @@ TEST(CommandLine, VerifyRunsOneTestOrAllWithAPrefix) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("1 of 1 pass"));
   }
+  const std::string csv = run(scratch, {"verify", "free-fall", "--csv"}).out;
+  EXPECT_THAT(csv, HasSubstr("test,quantity,reference,measured,"));
+  EXPECT_THAT(csv, HasSubstr("free-fall,\"drop after 100 steps [m]\",4.94"));
   expect_refusal(run(scratch, {"verify", "fre"}), 2, "there is no test `fre`");
 }
 
