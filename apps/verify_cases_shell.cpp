@@ -1,6 +1,4 @@
-// Shells: a strip that hangs, a strip that bends under its own weight.
-#include <cmath>
-
+// Shells: a strip that hangs.
 #include "verify_case.hpp"
 #include "verify_experiment.hpp"
 #include <fmt/format.h>
@@ -52,38 +50,12 @@ std::vector<Comparison> hanging_shell() {
   return numbers;
 }
 
-std::vector<Comparison> cantilever_shell() {
-  const Experiment experiment;
-  experiment.level_sheet("sheet.obj", 1, 0.25, cells);
-  const double width = 1.0 / cells;
-  const double length = 1 - width;  // two rows are held: the clamp is at the second
-  std::vector<Comparison> numbers;
-  struct Case {
-    double gamma, drop_over_reach;
-  };
-  for (const Case& c : {Case{1, 0.1245617664}, Case{5, 0.5857211825}, Case{20, 1.8639301444}}) {
-    const double rigidity = areal_density * gravity * std::pow(length, 3) / c.gamma;
-    Simulation simulation = experiment.start(
-        static_solve(1e-4) + sheet(1e4, rigidity) +
-        fmt::format(
-            "[[pin]]\nwhere = {{ plane = {{ point = [0, 0, 0], normal = [1, 0, 0], distance = {} }} }}\n",
-            1.5 * width));
-    advance(simulation, 2);
-    const Vec3 tip = row(simulation, cells);
-    numbers.push_back({fmt::format("drop over reach, rho g L3/D = {}", c.gamma), c.drop_over_reach,
-                       -tip.y() / (tip.x() - width), 1e-2});
-  }
-  return numbers;
-}
-
 }  // namespace
 
 std::vector<VerifyCase> shell_cases() {
   return {
       {"hanging-shell", "a hanging shell stretches by rho g (L s - s2/2) / K", "closed form", false,
        hanging_shell},
-      {"cantilever-shell", "a level strip bends under its own weight as the heavy elastica",
-       "elastica, by shooting; after Romero et al. 2021", true, cantilever_shell},
   };
 }
 

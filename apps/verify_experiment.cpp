@@ -113,6 +113,8 @@ void Experiment::cube(const std::string& file, double side, int cells) const {
   write(file, vertices + faces);
 }
 
+void Experiment::mesh(const std::string& file, const Mesh& mesh) const { write_mesh(folder_ / file, mesh); }
+
 void Experiment::upright_sheet(const std::string& file, double x, double y) const {
   write(file,
         fmt::format("v 0 0 0\nv {0:.17g} 0 0\nv {0:.17g} {1:.17g} 0\nv 0 {1:.17g} 0\nf 1 2 3 4\n", x, y));

@@ -33,6 +33,8 @@ class Experiment {
   void ball(const std::string& file, double radius, int segments, int rings) const;
   /// Writes a closed cube about the origin, every side of `cells` by `cells` squares [m].
   void cube(const std::string& file, double side, int cells) const;
+  /// Writes any mesh.
+  void mesh(const std::string& file, const Mesh& mesh) const;
   /// Writes an upright sheet x by y in the plane z = 0 [m].
   void upright_sheet(const std::string& file, double x, double y) const;
 
