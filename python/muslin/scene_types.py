@@ -130,6 +130,7 @@ MaterialOfAShell = TypedDict(
         "bending_friction_warp": Optional[float],  # internal friction: greatest moment per width with which warp resists every change of curvature, half of KES-FB2's 2HB; 0 is off [N]
         "bending_friction_weft": Optional[float],  # internal friction when weft bends [N]
         "bending_friction_curvature": Optional[float],  # change of curvature over which internal friction builds up [1/m]
+        "stretch_limit": Optional[float],  # largest stretch in any direction, as length over rest length, unless the body has a `stretch_limit` of its own
         "mass_damping": Optional[float],  # Rayleigh's α: slows all motion [1/s]
         "stiffness_damping": Optional[float],  # Rayleigh's β of stretch and shear [s]
         "bending_damping": Optional[float],  # Rayleigh's β of bending [s]
@@ -390,6 +391,7 @@ ShellBody = TypedDict(
         "thickness": Optional[float],  # thickness in contact [m]
         "rest_mesh": Optional[Path],  # a mesh with the same polygons in the stress-free shape; `scale` applies to it
         "warp": Optional[Vector],  # direction of the warp threads in the mesh as modelled
+        "compression": Optional[Literal["buckling", "elastic"]],  # how threads resist compression: `buckling`, up to the load at which cells of the mesh fold; `elastic`, as they resist tension
         "stretch_limit": Optional[float],  # largest stretch of a triangle in any direction, as length over rest length; 1.05 allows 5 %
         "material": Required[Union[str, "MaterialOfAShell"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
         "translate": Optional[Vector],  # displacement, applied last [m]

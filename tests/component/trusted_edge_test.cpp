@@ -24,7 +24,8 @@ ShellMaterial sheet(double stiffness, double bending) {
 
 TEST(TrustedEdge, HasTheMembraneAtSixteenTimesTheEnergyOfBending) {
   const ShellMaterial m = sheet(1e8, 1e-5);
-  const double h = trusted_edge(m).unlocked, radius = 2 * trusted_edge(m).resolved;
+  const double h = trusted_edge(m, Compression::elastic).unlocked,
+               radius = 2 * trusted_edge(m, Compression::elastic).resolved;
   EXPECT_NEAR(radius, std::cbrt(1e-5 / 0.981), 1e-12);
   ASSERT_LT(h, radius / 10);
   const int cells = 8;
@@ -38,26 +39,28 @@ TEST(TrustedEdge, HasTheMembraneAtSixteenTimesTheEnergyOfBending) {
 }
 
 TEST(TrustedEdge, IsLimitedByFoldsIfTheSheetIsThick) {
-  const TrustedEdge thick = trusted_edge(sheet(1e4, 1e-3)), thin = trusted_edge(sheet(1e4, 1e-6));
+  const TrustedEdge thick = trusted_edge(sheet(1e4, 1e-3), Compression::elastic),
+                    thin = trusted_edge(sheet(1e4, 1e-6), Compression::elastic);
   EXPECT_EQ(thick.length(), thick.resolved);
   EXPECT_EQ(thin.length(), thin.unlocked);
   EXPECT_NEAR(thin.unlocked / thick.unlocked, std::pow(1e-3, 5.0 / 12), 1e-9);
 }
 
 TEST(TrustedEdge, OfFabricsIsLongestForStiffOnes) {
-  const auto edge = [](const char* name) { return trusted_edge(*find_material(name).shell).length(); };
+  const auto edge = [](const char* name) {
+    return trusted_edge(*find_material(name).shell, Compression::elastic).length();
+  };
   EXPECT_NEAR(edge("silk"), 0.00556, 1e-5);
   EXPECT_GT(edge("denim"), 2 * edge("silk"));
   EXPECT_GT(edge("canvas"), edge("denim"));
 }
 
-TEST(TrustedEdge, IsUnlockedByASofterMembrane) {
-  const ShellMaterial stiff = sheet(1e6, 1e-5);
-  const double softer = unlocked_stiffness(stiff, 0.01);
-  EXPECT_LT(softer, 1e6);
-  EXPECT_NEAR(trusted_edge(sheet(softer, 1e-5)).unlocked, 0.01, 1e-12);
-  EXPECT_TRUE(std::isinf(trusted_edge(sheet(0, 1e-5)).unlocked));
-  EXPECT_EQ(trusted_edge(sheet(1e6, 0)).length(), 0);
+TEST(TrustedEdge, IsThatOfFoldsIfThreadsBuckle) {
+  const TrustedEdge silk = trusted_edge(*find_material("silk").shell, Compression::buckling);
+  EXPECT_TRUE(std::isinf(silk.unlocked));
+  EXPECT_NEAR(silk.length(), 0.5 * std::cbrt(std::sqrt(6e-12) / (9.81 * 0.06)), 1e-9);
+  EXPECT_TRUE(std::isinf(trusted_edge(sheet(0, 1e-5), Compression::elastic).unlocked));
+  EXPECT_EQ(trusted_edge(sheet(1e6, 0), Compression::elastic).length(), 0);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "support/lattice_box.hpp"
 #include "support/linearized_product.hpp"
+#include "muslin/energy/plastic_hinges.hpp"
 #include "support/potential_battery.hpp"
 #include "support/sheet.hpp"
 #include <fmt/format.h>
@@ -14,7 +15,6 @@
 #include "muslin/energy/bending_friction.hpp"
 #include "muslin/energy/measured_membrane.hpp"
 #include "muslin/energy/membrane_energy.hpp"
-#include "muslin/energy/plastic_hinges.hpp"
 #include "muslin/energy/shell_bending.hpp"
 #include "muslin/energy/solid_laws.hpp"
 #include "muslin/energy/stretch_limit.hpp"
@@ -64,6 +64,16 @@ Case membrane() {
       {scaled(1.3, 1, 1.1), scaled(0.7, 1, 0.8)}, 0.03);
 }
 
+/// Both families of threads, one of them or none are buckled.
+Case buckling_membrane() {
+  return of_sheet(
+      [](const Shell& shell, auto pattern) {
+        return std::make_shared<MembraneEnergy>(shell, MembraneModuli{900, 500, 130, 0.25}, pattern,
+                                                BucklingRigidity{0.02, 0.01});
+      },
+      {scaled(1.3, 1, 1.1), scaled(0.7, 1, 0.8), scaled(0.8, 1, 1.1), scaled(1.1, 1, 0.7)}, 0.005);
+}
+
 Case membrane_of_many_fabrics() {
   return of_sheet(
       [](const Shell& shell, auto pattern) {
@@ -75,17 +85,19 @@ Case membrane_of_many_fabrics() {
       {scaled(1.3, 1, 1.1), scaled(0.7, 1, 0.8)}, 0.03);
 }
 
-Case measured_membrane() {
+Case membrane_of_curves(const BucklingRigidity& rigidity, double noise) {
   return of_sheet(
-      [](const Shell& shell, auto pattern) {
+      [&rigidity](const Shell& shell, auto pattern) {
         ShellMaterial material;
         material.warp_curve = {{0.05, 20}, {0.1, 60}, {0.2, 300}};
         material.weft_curve = {{0.04, 40}, {0.2, 100}, {0.4, 180}};
         material.shear_curve = {{2, 2}, {8, 12}, {20, 60}};
-        return std::make_shared<MeasuredMembrane>(shell, stress_of(material), 0.25, pattern);
+        return std::make_shared<MeasuredMembrane>(shell, stress_of(material), 0.25, pattern, rigidity);
       },
-      {scaled(1.3, 1, 1.1), scaled(0.7, 1, 0.8), scaled(1.1, 1, 0.9)}, 0.03);
+      {scaled(1.3, 1, 1.1), scaled(0.7, 1, 0.8), scaled(1.1, 1, 0.9)}, noise);
 }
+Case measured_membrane() { return membrane_of_curves({}, 0.03); }
+Case buckling_measured_membrane() { return membrane_of_curves({0.02, 0.01}, 0.005); }
 
 Case bending() {
   Case c = of_sheet(
@@ -245,15 +257,17 @@ TEST_P(ElementsBattery, MaterialStiffnessDoesNotResistRotation) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pairs, ElementsBattery,
-                         testing::Values(Pair{"MembraneOnTriangles", membrane},
-                                         Pair{"MembraneOfManyFabricsOnTriangles", membrane_of_many_fabrics},
-                                         Pair{"MeasuredMembraneOnTriangles", measured_membrane},
-                                         Pair{"StretchLimitOnTriangles", stretch_limit},
-                                         Pair{"ShellBending", bending}, Pair{"PlasticHinges", plastic_hinges},
-                                         Pair{"BendingFriction", bending_friction},
-                                         Pair{"MeasuredBending", measured_bending}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Pairs, ElementsBattery,
+    testing::Values(Pair{"MembraneOnTriangles", membrane},
+                    Pair{"BucklingMembraneOnTriangles", buckling_membrane},
+                    Pair{"MembraneOfManyFabricsOnTriangles", membrane_of_many_fabrics},
+                    Pair{"MeasuredMembraneOnTriangles", measured_membrane},
+                    Pair{"BucklingMeasuredMembraneOnTriangles", buckling_measured_membrane},
+                    Pair{"StretchLimitOnTriangles", stretch_limit}, Pair{"ShellBending", bending},
+                    Pair{"PlasticHinges", plastic_hinges}, Pair{"BendingFriction", bending_friction},
+                    Pair{"MeasuredBending", measured_bending}),
+    [](const auto& info) { return info.param.name; });
 INSTANTIATE_TEST_SUITE_P(Solids, ElementsBattery, testing::ValuesIn(solids()),
                          [](const auto& info) { return info.param.name; });
 

@@ -65,6 +65,7 @@ name = "sheet"
 mesh = "sheet"
 rest_mesh = "smaller"
 model = "shell"
+compression = "elastic"
 material = { base = "cotton", mass_damping = 0.2, stiffness_damping = 1e-3 }
 stretch_limit = 1.05
 [[pin]]
@@ -98,6 +99,7 @@ contact = false
 name = "sheet"
 mesh = "sheet"
 model = "shell"
+compression = "elastic"
 material = "wool"
 contact = false
 translate = [1, 0, 0]
@@ -126,6 +128,7 @@ friction = 0.3
 name = "lower"
 mesh = "sheet"
 model = "shell"
+compression = "elastic"
 material = "wool"
 stretch_limit = 10
 translate = [-0.14, 0.105, -0.13]
@@ -133,6 +136,7 @@ translate = [-0.14, 0.105, -0.13]
 name = "upper"
 mesh = "sheet"
 model = "shell"
+compression = "elastic"
 material = "cotton"
 stretch_limit = 10
 translate = [-0.16, 0.11, -0.16]
@@ -195,6 +199,7 @@ distance = 0.003
 name = "sheet"
 mesh = "sheet"
 model = "shell"
+compression = "elastic"
 material = "denim"
 [[collider]]
 name = "wedge"
@@ -223,6 +228,7 @@ const Recording recordings[] = {
     {"linearly_implicit_euler", flag, {"solver.integrator=linearly_implicit_euler"}, 8, 1e-9},
     {"symplectic_euler", flag, {"solver.integrator=symplectic_euler"}, 8, 1e-9},
     {"shell", shell, {}, 6, 1e-9},
+    {"buckling", shell, {"body.sheet.compression=buckling"}, 6, 1e-9},
     {"mixed", mixed, {}, 6, 1e-9},
     {"contact", contact, {}, 6, 1e-7},
     {"contact_bdf2", contact, {"solver.integrator=bdf2"}, 6, 1e-7},

@@ -24,7 +24,8 @@ constexpr double radius = 0.1, stiffness = 1000;
 Scene read(const std::string& pressure, const std::string& mesh = "ball") {
   Scene scene =
       parse_scene("[time]\nduration = 2\n[[body]]\nname = 'shell'\nmodel = 'shell'\nmesh = '" + mesh +
-                      "'\nwarp = [1, 0.3, 0.2]\nmaterial = { areal_density = 0.2, membrane_warp = 1000, "
+                      "'\ncompression = 'elastic'\nwarp = [1, 0.3, 0.2]\nmaterial = { areal_density = 0.2, "
+                      "membrane_warp = 1000, "
                       "bending_warp = 1e-7, "
                       "poisson = 0.25, mass_damping = 20 }\n" +
                       pressure,

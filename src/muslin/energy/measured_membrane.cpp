@@ -13,21 +13,25 @@ template class Elements<TriangleStencil, MeasuredMembraneLaw>;
 
 namespace {
 
-MeasuredMembraneLaw::Constants constants_of(const SheetStress& stress, double poisson) {
+MeasuredMembraneLaw::Constants constants_of(const SheetStress& stress, double poisson,
+                                            const BucklingRigidity& rigidity) {
   require(poisson >= 0 && poisson < 1 && poisson <= highest_poisson(stress),
           "a sheet of these curves and this Poisson ratio is unstable", "give 0 to highest_poisson");
   const double warp = stress.warp.slope(0), weft = stress.weft.slope(0);
   const double square = poisson * poisson, narrowed = square / (1 - square);
-  return {stress.warp.plus(narrowed * warp), stress.weft.plus(narrowed * weft), stress.shear,
-          poisson * std::sqrt(warp * weft) / (1 - square)};
+  return {{warp + narrowed * warp, poisson * std::sqrt(warp * weft) / (1 - square), weft + narrowed * weft,
+           buckling_load(rigidity.warp), buckling_load(rigidity.weft)},
+          stress.warp.plus(-warp),
+          stress.weft.plus(-weft),
+          stress.shear};
 }
 
 /// The masses hold what buckles only where the stiffest state leaves them digits.
 TriangleStencil stencil_of(const ElementSlabs<3>& slabs, const Shell& shell,
                            const MeasuredMembraneLaw::Constants& c, bool bounded) {
   TriangleStencil stencil(slabs, shell);
-  const PlaneModuli stiffest{c.warp.greatest_slope(), c.coupling, c.weft.greatest_slope(),
-                             c.shear.greatest_slope()};
+  const PlaneModuli stiffest{c.threads.c11 + c.warp.greatest_slope(), c.threads.c12,
+                             c.threads.c22 + c.weft.greatest_slope(), c.shear.greatest_slope()};
   if (bounded) stencil.use_masses(slabs, shell, std::vector<PlaneModuli>(shell.triangles.size(), stiffest));
   return stencil;
 }
@@ -41,7 +45,9 @@ MeasuredMembrane::MeasuredMembrane(std::shared_ptr<const Slabs> slabs, const She
                LawConstants<MeasuredMembraneLaw>(constants), pattern) {}
 
 MeasuredMembrane::MeasuredMembrane(const Shell& shell, const SheetStress& stress, double poisson,
-                                   std::shared_ptr<const SymmetricPattern> pattern)
-    : MeasuredMembrane(triangle_slabs(shell), shell, constants_of(stress, poisson), std::move(pattern)) {}
+                                   std::shared_ptr<const SymmetricPattern> pattern,
+                                   const BucklingRigidity& rigidity)
+    : MeasuredMembrane(triangle_slabs(shell), shell, constants_of(stress, poisson, rigidity),
+                       std::move(pattern)) {}
 
 }  // namespace muslin

@@ -2,7 +2,8 @@
 // T_u and T_v the stresses that a strip pulled along warp or weft has over its strain, free to narrow, K_u
 // and K_v their slopes at rest and ν Poisson's ratio,
 //
-//   f' = T_u + ν²/(1−ν²) K_u E_uu,   g' = T_v + ν²/(1−ν²) K_v E_vv,   c = ν √(K_u K_v)/(1−ν²),
+//   C₁₁ = K_u/(1−ν²),   C₂₂ = K_v/(1−ν²),   C₁₂ = ν √(K_u K_v)/(1−ν²),   f' = T_u − K_u E_uu,   g' = T_v −
+//   K_v E_vv,
 //
 // so that such a strip has exactly T_u or T_v, and narrows in proportion to its strain. The sheet is stable,
 // ψ being convex, for ν up to highest_poisson (energy/sheet_stress.hpp). docs/theory/shells.md.
@@ -26,7 +27,8 @@ class MeasuredMembrane : public Elements<TriangleStencil, MeasuredMembraneLaw> {
   /// `pattern` is the shell's block_pattern, or null. Errors: usage, unless 0 ≤ poisson ≤ highest_poisson and
   /// < 1.
   MeasuredMembrane(const Shell& shell, const SheetStress& stress, double poisson,
-                   std::shared_ptr<const SymmetricPattern> pattern = nullptr);
+                   std::shared_ptr<const SymmetricPattern> pattern = nullptr,
+                   const BucklingRigidity& rigidity = {});
 
  private:
   MeasuredMembrane(std::shared_ptr<const Slabs> slabs, const Shell& shell,

@@ -13,7 +13,7 @@ template class Elements<TriangleStencil, MembraneLaw>;
 
 namespace {
 
-PlaneModuli constants_of(const MembraneModuli& moduli) {
+PlaneModuli plane_moduli(const MembraneModuli& moduli) {
   require(moduli.warp >= 0 && moduli.weft >= 0 && moduli.shear >= 0, "a membrane modulus is negative",
           "give 0 or more");
   require(std::abs(moduli.poisson) < 1, "the Poisson ratio of a membrane is not between -1 and 1",
@@ -27,10 +27,14 @@ PlaneModuli constants_of(const MembraneModuli& moduli) {
   return constants;
 }
 
-std::vector<PlaneModuli> constants_of(std::span<const MembraneModuli> moduli) {
+std::vector<PlaneModuli> plane_moduli(std::span<const MembraneModuli> moduli) {
   std::vector<PlaneModuli> constants;
-  for (const MembraneModuli& of_triangle : moduli) constants.push_back(constants_of(of_triangle));
+  for (const MembraneModuli& of_triangle : moduli) constants.push_back(plane_moduli(of_triangle));
   return constants;
+}
+
+MembraneLaw::Constants constants_of(const PlaneModuli& m, const BucklingRigidity& rigidity) {
+  return {m.c11, m.c12, m.c22, m.g, buckling_load(rigidity.warp), buckling_load(rigidity.weft)};
 }
 
 TriangleStencil stencil_of(const ElementSlabs<3>& slabs, const Shell& shell,
@@ -43,20 +47,24 @@ TriangleStencil stencil_of(const ElementSlabs<3>& slabs, const Shell& shell,
 }  // namespace
 
 MembraneEnergy::MembraneEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
-                               const std::vector<PlaneModuli>& moduli,
+                               const std::vector<PlaneModuli>& moduli, const BucklingRigidity& rigidity,
                                std::shared_ptr<const SymmetricPattern> pattern)
-    : Elements(slabs, stencil_of(*slabs, shell, moduli, pattern != nullptr),
-               LawConstants<MembraneLaw>(*slabs, [&](std::size_t t) { return moduli[t]; }), pattern) {}
+    : Elements(
+          slabs, stencil_of(*slabs, shell, moduli, pattern != nullptr),
+          LawConstants<MembraneLaw>(*slabs, [&](std::size_t t) { return constants_of(moduli[t], rigidity); }),
+          pattern) {}
 
 MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
-                               std::shared_ptr<const SymmetricPattern> pattern)
+                               std::shared_ptr<const SymmetricPattern> pattern,
+                               const BucklingRigidity& rigidity)
     : MembraneEnergy(triangle_slabs(shell), shell,
-                     std::vector<PlaneModuli>(shell.triangles.size(), constants_of(moduli)),
+                     std::vector<PlaneModuli>(shell.triangles.size(), plane_moduli(moduli)), rigidity,
                      std::move(pattern)) {}
 
 MembraneEnergy::MembraneEnergy(const Shell& shell, std::span<const MembraneModuli> moduli,
-                               std::shared_ptr<const SymmetricPattern> pattern)
-    : MembraneEnergy(triangle_slabs(shell), shell, constants_of(moduli), std::move(pattern)) {
+                               std::shared_ptr<const SymmetricPattern> pattern,
+                               const BucklingRigidity& rigidity)
+    : MembraneEnergy(triangle_slabs(shell), shell, plane_moduli(moduli), rigidity, std::move(pattern)) {
   assert(moduli.size() == shell.triangles.size());
 }
 

@@ -1,5 +1,5 @@
 // MembraneEnergy resists stretch and shear of a shell: an orthotropic St. Venant-Kirchhoff membrane on linear
-// triangles.
+// triangles, whose threads may buckle (cell_buckling.hpp). Unless they do,
 //
 //   W = Σ ½ A (C₁₁ E_uu² + 2 C₁₂ E_uu E_vv + C₂₂ E_vv² + G (2 E_uv)²),   E = ½ (FᵀF − I),
 //
@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "muslin/energy/cell_buckling.hpp"
 #include "muslin/energy/elements.hpp"
 #include "muslin/energy/membrane_law.hpp"
 #include "muslin/energy/shell_pattern.hpp"
@@ -41,14 +42,17 @@ class MembraneEnergy : public Elements<TriangleStencil, MembraneLaw> {
  public:
   /// `pattern` is the shell's block_pattern, or null. Errors: usage, if a modulus is out of its range.
   MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
-                 std::shared_ptr<const SymmetricPattern> pattern = nullptr);
+                 std::shared_ptr<const SymmetricPattern> pattern = nullptr,
+                 const BucklingRigidity& rigidity = {});
   /// Gives each triangle its own moduli, #T.
   MembraneEnergy(const Shell& shell, std::span<const MembraneModuli> moduli,
-                 std::shared_ptr<const SymmetricPattern> pattern = nullptr);
+                 std::shared_ptr<const SymmetricPattern> pattern = nullptr,
+                 const BucklingRigidity& rigidity = {});
 
  private:
   MembraneEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
-                 const std::vector<PlaneModuli>& moduli, std::shared_ptr<const SymmetricPattern> pattern);
+                 const std::vector<PlaneModuli>& moduli, const BucklingRigidity& rigidity,
+                 std::shared_ptr<const SymmetricPattern> pattern);
 };
 
 }  // namespace muslin

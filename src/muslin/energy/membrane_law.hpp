@@ -1,21 +1,25 @@
 // MembraneLaw is an orthotropic St. Venant-Kirchhoff membrane: with E = ½ (FᵀF − I),
 //
-//   ψ = ½ (C₁₁ E_uu² + 2 C₁₂ E_uu E_vv + C₂₂ E_vv² + G (2 E_uv)²)   [N/m]
+//   ψ = ½ (C₁₁ E_uu² + 2 C₁₂ E_uu E_vv + C₂₂ E_vv² + G (2 E_uv)²)   [N/m],
 //
-// For triangles.
+// whose threads buckle (cell_buckling.hpp). For triangles.
 #pragma once
 
 #include <array>
 #include <limits>
 
 #include "muslin/core/vector_code.hpp"
+#include "muslin/energy/cell_buckling.hpp"
 #include "muslin/energy/law.hpp"
 #include "muslin/energy/triangle_stencil.hpp"
 
 namespace muslin {
 
 struct MembraneLaw {
-  using Constants = PlaneModuli;  // [N/m]
+  struct Constants {
+    double c11, c12, c22, g;      // [N/m]
+    double load_warp, load_weft;  // [N·m]
+  };
   static constexpr bool principal = false;
 
   static constexpr double none = std::numeric_limits<double>::infinity();
@@ -28,15 +32,22 @@ struct MembraneLaw {
   }};
 
   MUSLIN_INLINE static double energy(const Constants& c, double area, const Metric& m) {
-    const double euu = 0.5 * (m.aa - 1), evv = 0.5 * (m.bb - 1);
-    return 0.5 * area *
-           (c.c11 * (euu * euu) + 2 * c.c12 * (euu * evv) + c.c22 * (evv * evv) + c.g * (m.ab * m.ab));
+    return 0.5 * area * (threads(c, area, m).twice_energy + c.g * (m.ab * m.ab));
   }
   MUSLIN_INLINE static PlaneStress stress(const Constants& c, double area, const Metric& m) {
-    const double euu = 0.5 * (m.aa - 1), evv = 0.5 * (m.bb - 1);
-    return {area * (c.c11 * euu + c.c12 * evv), area * (c.c12 * euu + c.c22 * evv), area * (c.g * m.ab)};
+    const ThreadState t = threads(c, area, m);
+    return {area * t.uu, area * t.vv, area * (c.g * m.ab)};
   }
-  MUSLIN_INLINE static PlaneModuli moduli(const Constants& c) { return c; }
+  MUSLIN_INLINE static PlaneModuli moduli(const Constants& c, double area, const Metric& m) {
+    const ThreadState t = threads(c, area, m);
+    return {t.c11, t.c12, t.c22, c.g};
+  }
+
+ private:
+  MUSLIN_INLINE static ThreadState threads(const Constants& c, double area, const Metric& m) {
+    return state_of({c.c11, c.c12, c.c22, c.load_warp, c.load_weft}, area, 0.5 * (m.aa - 1),
+                    0.5 * (m.bb - 1));
+  }
 };
 
 }  // namespace muslin

@@ -7,7 +7,7 @@
 //
 //     dW = Σ A (S_uu a·da + S_vv b·db + S_uv (a·db + b·da))
 //
-//   moduli       C₁₁, C₁₂, C₂₂ and G [N/m], constant or a function of the metric, in
+//   moduli       C₁₁, C₁₂, C₂₂ and G [N/m] in
 //
 //     d²W = A (C₁₁ (a·da)² + 2 C₁₂ (a·da)(b·db) + C₂₂ (b·db)² + G (a·db + b·da)²)
 //         + A (S_uu da·da + S_vv db·db + 2 S_uv da·db),
@@ -283,10 +283,6 @@ class TriangleStencil {
   void find_held(int first, int count, std::span<const double> masses,
                  const std::vector<std::array<int, 3>>& vertices, MassBound& bound) const;
 
-  /// The moduli of a law in (warp, weft) do not depend on the strain.
-  template <class Law>
-  static constexpr bool has_constant_moduli = requires(const typename Law::Constants& c) { Law::moduli(c); };
-
   struct LaneModuli {
     double along[2][element_lanes], across[2][element_lanes];  // C₁₁, C₂₂; C₁₂, G
     MUSLIN_INLINE double c11(int l) const { return along[0][l]; }
@@ -299,15 +295,9 @@ class TriangleStencil {
     }
   };
 
-  /// A stiffness in the frame of the law: moduli only where they depend on the strain, turned data only where
-  /// the law is principal.
+  /// A stiffness in the frame of the law: turned data only where the law is principal.
   template <class Law>
   struct Stiff : LaneModuli {
-    StrainedTriangles strained;
-  };
-  template <class Law>
-    requires(has_constant_moduli<Law>)
-  struct Stiff<Law> {
     StrainedTriangles strained;
   };
   template <class Law>
@@ -350,9 +340,8 @@ class TriangleStencil {
       turn(kind == Stiffness::material, law, rest, out);
     } else {
       find_stress(law, rest, s);
-      if constexpr (!has_constant_moduli<Law>) {
-        for (int l = 0; l < element_lanes; ++l) out.set(l, Law::moduli(law[l], metric(s.a, s.b, l)));
-      }
+      for (int l = 0; l < element_lanes; ++l)
+        out.set(l, Law::moduli(law[l], rest.area[l], metric(s.a, s.b, l)));
       if (kind == Stiffness::bounded) bound_compression(rest, bound.scale, bound.held, s);
       if (kind == Stiffness::projected) cut_compression(s.suu, s.svv, s.suv);
       if (kind == Stiffness::material)
@@ -362,46 +351,28 @@ class TriangleStencil {
   }
 
   template <class Law>
-  MUSLIN_VECTOR_CODE static void multiply(const LawLanes<Law>& law, const TriangleRest& rest,
+  MUSLIN_VECTOR_CODE static void multiply(const LawLanes<Law>&, const TriangleRest& rest,
                                           const Stiff<Law>& stiff, const Batch<3>& p, Batch<3>& y) {
-    stiffness_product(moduli_of(law, stiff), in_frame(rest, stiff), stiff.strained, p, y);
+    stiffness_product(stiff, in_frame(rest, stiff), stiff.strained, p, y);
   }
 
   template <class Law>
-  static void add_corner_block(const LawLanes<Law>& law, const TriangleRest& rest, const Stiff<Law>& stiff,
-                               int l, int corner, Mat3& block) {
-    muslin::add_corner_block(moduli_of(law, stiff), in_frame(rest, stiff), stiff.strained, l, corner, block);
+  static void add_corner_block(const LawLanes<Law>&, const TriangleRest& rest, const Stiff<Law>& stiff, int l,
+                               int corner, Mat3& block) {
+    muslin::add_corner_block(stiff, in_frame(rest, stiff), stiff.strained, l, corner, block);
   }
 
   template <class Law>
-  MUSLIN_VECTOR_CODE static void add_pair_blocks(const LawLanes<Law>& law, const TriangleRest& rest,
+  MUSLIN_VECTOR_CODE static void add_pair_blocks(const LawLanes<Law>&, const TriangleRest& rest,
                                                  const Stiff<Law>& stiff, double scale, int count,
                                                  const unsigned* rows, const ElementSlabs<3>::Slots* slots,
                                                  Float4* blocks) {
     BlockFactors factors;
-    find_block_factors(moduli_of(law, stiff), in_frame(rest, stiff), stiff.strained, scale, factors);
+    find_block_factors(stiff, in_frame(rest, stiff), stiff.strained, scale, factors);
     for (int l = 0; l < count; ++l) add_block_rows(factors, l, rows[l], slots[l], blocks);
   }
 
  private:
-  /// Constant moduli of a law.
-  template <class Law>
-  struct OfLaw {
-    const LawLanes<Law>& law;
-    MUSLIN_INLINE double c11(int l) const { return Law::moduli(law[l]).c11; }
-    MUSLIN_INLINE double c12(int l) const { return Law::moduli(law[l]).c12; }
-    MUSLIN_INLINE double c22(int l) const { return Law::moduli(law[l]).c22; }
-    MUSLIN_INLINE double g(int l) const { return Law::moduli(law[l]).g; }
-  };
-
-  template <class Law>
-  MUSLIN_INLINE static decltype(auto) moduli_of(const LawLanes<Law>& law, const Stiff<Law>& stiff) {
-    if constexpr (has_constant_moduli<Law>) {
-      return OfLaw<Law>{law};
-    } else {
-      return static_cast<const LaneModuli&>(stiff);
-    }
-  }
   template <class Law>
   MUSLIN_INLINE static TriangleRest in_frame(const TriangleRest& rest, const Stiff<Law>& stiff) {
     if constexpr (Law::principal) {

@@ -14,7 +14,8 @@ void refuse_mode(const TomlTable& top) {
   if (contact == nullptr || contact->type != TomlValue::Type::table) return;
   const TomlValue* mode = contact->find("mode");
   if (mode == nullptr) return;
-  throw Error(ErrorKind::input, mode->key_place, "contact.mode no longer exists: every scene is solved in one way",
+  throw Error(ErrorKind::input, mode->key_place,
+              "contact.mode no longer exists: every scene is solved in one way",
               "remove it, and set solver.effort = \"draft\", \"normal\" or \"exact\" if it matters");
 }
 

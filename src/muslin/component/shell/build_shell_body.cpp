@@ -16,8 +16,7 @@
 namespace muslin {
 namespace {
 
-constexpr double folding_size = 8;       // cloth of fewer edges has no folds
-constexpr double least_stiffness = 100;  // of a membrane, over mass per area and size [m/s²]
+constexpr double folding_size = 8;  // cloth of fewer edges has no folds
 
 class ShellBuilder {
  public:
@@ -115,21 +114,15 @@ class ShellBuilder {
   /// Warns where the membrane is what limits the length of edges: all coarse meshes miss folds, but then they
   /// hang too softly, as users expect.
   void warn_of_long_edges() {
-    const ShellMaterial& m = *settings_.material.shell;
-    const TrustedEdge trusted = trusted_edge(m);
+    const TrustedEdge trusted = trusted_edge(*settings_.material.shell, own_.compression);
     const double edge = body_.shell.mean_edge, size = body_.mesh.bounds().sizes().maxCoeff();
     if (trusted.unlocked >= trusted.resolved || edge <= trusted.unlocked || size < folding_size * edge)
       return;
-    std::string remedy = "refine the mesh";
-    // A softer membrane must still carry the cloth; two digits may round up by a twentieth.
-    const double softer = 0.95 * unlocked_stiffness(m, edge);
-    if (softer > least_stiffness * m.areal_density * size && !has_curves(m))
-      remedy += fmt::format(
-          ", or set `membrane_warp` and `membrane_weft` to {:.2g} and a `stretch_limit` of 1.05", softer);
     say(fmt::format(
-        "its edges are {:.2g} m long on average; {} drapes too stiffly with more than {:.2g} m, because "
-        "folds across edges stretch the membrane; {}",
-        edge, settings_.material.name, trusted.unlocked, remedy));
+        "its edges are {:.2g} m long on average; with elastic compression {} drapes too stiffly with "
+        "more than {:.2g} m, because folds across edges strain the membrane; leave out `compression`, "
+        "or refine the mesh",
+        edge, settings_.material.name, trusted.unlocked));
   }
 
   const BodySettings& settings_;

@@ -90,9 +90,10 @@ std::uint64_t ShellBody::shape_hash(std::uint64_t seed) const {
 
 std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
   const ShellMaterial& m = *settings.material.shell;
-  const std::array numbers = {m.areal_density, m.membrane_warp,     m.membrane_weft,  m.membrane_shear,
-                              m.poisson,       m.bending_warp,      m.bending_weft,   m.bending_bias,
-                              m.mass_damping,  m.stiffness_damping, m.bending_damping};
+  const std::array numbers = {m.areal_density,     m.membrane_warp,   m.membrane_weft,
+                              m.membrane_shear,    m.poisson,         m.bending_warp,
+                              m.bending_weft,      m.bending_bias,    m.mass_damping,
+                              m.stiffness_damping, m.bending_damping, static_cast<double>(own().compression)};
   std::uint64_t hash =
       hash_bytes(numbers.data(), sizeof numbers, muslin::material_hash(settings.material, 0, seed));
   std::uint64_t place = 0;
@@ -124,7 +125,7 @@ std::string ShellBody::description_json() const {
   json["hinges"] = s.hinges;
   json["area"] = shell.area;
   json["mean_edge"] = shell.mean_edge;
-  json["trusted_edge"] = trusted_edge(*settings.material.shell).length();
+  json["trusted_edge"] = trusted_edge(*settings.material.shell, own().compression).length();
   if (own().stretch_limit) json["stretch_limit"] = *own().stretch_limit;
   json["warp"] = own().warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
   json["material"] = settings.material.name;
@@ -159,7 +160,7 @@ std::string ShellBody::description() const {
   if (has_bending_friction(m))
     text += fmt::format("  friction    of bending, up to warp {:.3g}, weft {:.3g} N within {:.3g}/m\n",
                         m.bending_friction_warp, m.bending_friction_weft, m.bending_friction_curvature);
-  if (const double edge = trusted_edge(m).length(); edge > 0)
+  if (const double edge = trusted_edge(m, own().compression).length(); edge > 0)
     text += fmt::format("  drape       as the fabric's with edges of up to {:.2g} m\n", edge);
   if (own().stretch_limit)
     text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *own().stretch_limit);

@@ -9,12 +9,17 @@
 
 namespace muslin {
 
+/// Tells how threads resist compression: by no more than the load at which cells of the mesh buckle
+/// (energy/cell_buckling.hpp), or with the moduli of tension.
+enum class Compression { buckling, elastic };
+
 struct ShellBodySettings {
   std::optional<double> thickness;  ///< as contact sees it [m]; default: see shell_body.hpp
   std::string rest_mesh;            ///< path of the shape without stress; empty: the mesh
   Place rest_mesh_place;
   /// Direction of the warp threads; default: along the texture's u, or the longest side.
   std::optional<Vec3> warp;
+  Compression compression = Compression::buckling;
   std::optional<double> stretch_limit;  ///< of length to rest length in every direction; default: none
 };
 

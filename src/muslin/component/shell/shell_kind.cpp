@@ -81,6 +81,10 @@ const schema::Table& keys() {
        schema::direction("warp", &Own::warp, "[1, 0, 0]")
            .otherwise("see below")
            .means("direction of the warp threads in the mesh as modelled"),
+       schema::word("compression", &Own::compression, {"buckling", "elastic"})
+           .means(
+               "how threads resist compression: `buckling`, up to the load at which cells of the mesh fold; "
+               "`elastic`, as they resist tension"),
        schema::number("stretch_limit", &Own::stretch_limit)
            .range({least_stretch_limit, 10, false})
            .may_change_on_resume()

@@ -58,10 +58,16 @@ class ShellTerms {
   std::shared_ptr<const ElementEnergy> membrane_on(std::shared_ptr<const SymmetricPattern> pattern) const {
     const ShellMaterial& m = material_;
     if (has_curves(m))
-      return std::make_shared<MeasuredMembrane>(body_.shell, stress_, m.poisson, std::move(pattern));
+      return std::make_shared<MeasuredMembrane>(body_.shell, stress_, m.poisson, std::move(pattern),
+                                                rigidity());
     return std::make_shared<MembraneEnergy>(
         body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson},
-        std::move(pattern));
+        std::move(pattern), rigidity());
+  }
+  BucklingRigidity rigidity() const {
+    if (body_.own().compression == Compression::elastic) return {};
+    const SheetMoments moments = moments_of(material_);
+    return {moments.warp.slope(0), moments.weft.slope(0)};
   }
   std::shared_ptr<const ShellBending> bending_on(std::shared_ptr<const SymmetricPattern> pattern,
                                                  std::span<const std::uint8_t> held) const {

@@ -1,6 +1,7 @@
 #include "muslin/component/shell/trusted_edge.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "muslin/material/measured_sheet.hpp"
 
@@ -24,21 +25,17 @@ double fold_radius(const ShellMaterial& material) {
   return std::cbrt(bending_stiffness(material) / (gravity * material.areal_density));
 }
 
-/// h⁴ K of edges that are just unlocked [N·m³].
-double unlocked_product(const ShellMaterial& material) {
-  return energy_ratio * 576 * bending_stiffness(material) * std::pow(fold_radius(material), 2);
-}
-
 }  // namespace
 
-TrustedEdge trusted_edge(const ShellMaterial& material) {
+TrustedEdge trusted_edge(const ShellMaterial& material, Compression compression) {
+  const double radius = fold_radius(material);
+  TrustedEdge edge{radius / edges_of_fold, std::numeric_limits<double>::infinity()};
+  if (compression == Compression::buckling) return edge;
   const SheetStress stress = stress_of(material);
   const double stiffness = mean(stress.warp.slope(0), stress.weft.slope(0));
-  return {fold_radius(material) / edges_of_fold, std::pow(unlocked_product(material) / stiffness, 0.25)};
-}
-
-double unlocked_stiffness(const ShellMaterial& material, double h) {
-  return unlocked_product(material) / std::pow(h, 4);
+  edge.unlocked =
+      std::pow(energy_ratio * 576 * bending_stiffness(material) * radius * radius / stiffness, 0.25);
+  return edge;
 }
 
 }  // namespace muslin
