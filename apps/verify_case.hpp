@@ -43,6 +43,7 @@ std::vector<VerifyCase> fabric_plate_cases();
 std::vector<VerifyCase> fabric_stick_slip_cases();
 std::vector<VerifyCase> resolution_cases();
 std::vector<VerifyCase> fit_cases();
+std::vector<VerifyCase> drape_cases();
 std::vector<VerifyCase> friction_cases();
 std::vector<VerifyCase> contact_cases();
 std::vector<VerifyCase> promise_cases();
