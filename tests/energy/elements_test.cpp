@@ -6,7 +6,7 @@
 
 #include "support/lattice_box.hpp"
 #include "support/linearized_product.hpp"
-#include "muslin/energy/plastic_hinges.hpp"
+#include "support/plastic_hinges.hpp"
 #include "support/potential_battery.hpp"
 #include "support/sheet.hpp"
 #include <fmt/format.h>
@@ -136,7 +136,7 @@ Case plastic_hinges() {
   c.coupled = false;
   const Mesh mesh = test::flat_sheet(7, 6, 0.7, 0.6, 0.2);
   const Shell shell = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
-  const PlasticHinges load("hinges", shell, {1e-4, 3e-5, 5e-5}, {0.2, 0.3}, block_pattern(shell));
+  const test::PlasticHinges load("hinges", shell, {1e-4, 3e-5, 5e-5}, {0.2, 0.3}, block_pattern(shell));
   std::shared_ptr<const Potential> energy = load.potential(StepContext());
   c.energy = std::dynamic_pointer_cast<const ElementEnergy>(energy);
   return c;

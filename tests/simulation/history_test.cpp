@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "support/contact_scene.hpp"
+#include "support/plastic_hinges.hpp"
 #include "support/small_model.hpp"
 #include <gtest/gtest.h>
 
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/core/error.hpp"
-#include "muslin/energy/plastic_hinges.hpp"
 #include "muslin/potential/mass_damping.hpp"
 #include "muslin/simulation/simulation.hpp"
 
@@ -23,7 +23,7 @@ constexpr int held_frames = 19;  // of 1/50 s, the last whole one before
 
 /// Two triangles held at one of them; the other one is folded by a pin until `let_go`.
 struct Fold {
-  std::shared_ptr<const PlasticHinges> hinges;
+  std::shared_ptr<const test::PlasticHinges> hinges;
   std::shared_ptr<const Model> model;
 
   explicit Fold(double hardening = 0, bool wall = false) {
@@ -41,8 +41,8 @@ struct Fold {
     scene.hold({3}, motion);
     scene.model.pins.back().until = let_go;
     const Shell& shell = as_shell(scene.model.bodies[0])->shell;
-    hinges = std::make_shared<PlasticHinges>("fold", shell, BendingModuli{rigidity, rigidity, rigidity},
-                                             YieldLimit{yield, hardening}, block_pattern(shell));
+    hinges = std::make_shared<test::PlasticHinges>("fold", shell, BendingModuli{rigidity, rigidity, rigidity},
+                                                   test::YieldLimit{yield, hardening}, block_pattern(shell));
     scene.model.loads.push_back(
         {"fold", EnergyRole::elastic, std::make_shared<RestrictedLoad>(hinges, 0, 4)});
     scene.model.loads.push_back(
