@@ -25,12 +25,14 @@ name = "left"
 mesh = "sheet"
 model = "shell"
 material = "cotton"
+stretch_limit = 10
 contact = false
 [[body]]
 name = "right"
 mesh = "sheet"
 model = "shell"
 material = "cotton"
+stretch_limit = 10
 contact = false
 translate = [1, 0, 0]
 [[collider]]

@@ -415,7 +415,8 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
   if (simulation.options().allow_tangled) run["allow_tangled"] = true;
   run["contact"] = model.contact ? contact_record_json(*model.contact) : Json();
   run["scene"] = parsed_scene(model);
-  run["scene_file"] = fs::absolute(model.scene.file).lexically_normal().string();
+  if (!model.scene.file.empty())  // that of a program may have none
+    run["scene_file"] = fs::absolute(model.scene.file).lexically_normal().string();
   run["machine"] = {{"processor", processor()},
                     {"cores", std::thread::hardware_concurrency()},
                     {"threads", thread_count()},
