@@ -40,6 +40,7 @@ std::vector<VerifyCase> shell_cases();
 std::vector<VerifyCase> fabric_bending_cases();
 std::vector<VerifyCase> fabric_membrane_cases();
 std::vector<VerifyCase> fabric_plate_cases();
+std::vector<VerifyCase> fabric_motion_cases();
 std::vector<VerifyCase> fabric_stick_slip_cases();
 std::vector<VerifyCase> resolution_cases();
 std::vector<VerifyCase> fit_cases();

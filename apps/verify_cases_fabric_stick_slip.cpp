@@ -96,10 +96,11 @@ struct Slip {
   double early;  ///< way of its tip before, at the last push at which T/N is below 0.96 of the limit
 };
 
-/// Pushes a strip against a floor, from one push to the next in one step without inertia, until it slips by
-/// more than a hundredth of its length. T/N grows with the push.
+/// Pushes a strip against a floor, from one push to the next in one step without inertia and another one of
+/// rest, until it slips by more than a hundredth of its length. T/N grows with the push.
 Slip push_until_slip(const FabricMesh& of, double friction) {
   const double rigidity = 1e-3, frame_rate = 0.02;  // a step is twelve times 1/ω of the strip
+  const int frames = 2;
   const std::vector<double> shares = {0.9, 0.95, 0.98, 0.99, 1, 1.01, 1.02, 1.03};
   const PinnedElastica start = about_to_slip(0.8 * friction);
   const Experiment experiment;
@@ -109,10 +110,12 @@ Slip push_until_slip(const FabricMesh& of, double friction) {
   const Mesh flat = bent_strip(of, fabric_width, true, [](const Vec3& p) { return p; });
   experiment.mesh("flat.obj", flat);
   std::string push = "keyframes = [{ time = 0 }";
-  for (std::size_t i = 0; i < shares.size(); ++i)
-    push += fmt::format(", {{ time = {:.17g}, translate = [{:.17g}, 0, 0] }}",
-                        static_cast<double>(i + 1) / frame_rate,
-                        about_to_slip(shares[i] * friction).shortening() - start.shortening());
+  double time = 0;
+  for (const double share : shares) {
+    const double by = about_to_slip(share * friction).shortening() - start.shortening();
+    for (int i = 0; i < frames; ++i)
+      push += fmt::format(", {{ time = {:.17g}, translate = [{:.17g}, 0, 0] }}", time += 1 / frame_rate, by);
+  }
   // The gap at the start is nearly that of the pressure to come. Friction is that of the pressure in the
   // first iterations of a step: a strip that is thrown off the floor in the first step slips.
   Simulation simulation = experiment.start(
@@ -127,7 +130,7 @@ Slip push_until_slip(const FabricMesh& of, double friction) {
   Slip slip{0, 0};
   double stuck = 0;
   for (const double share : shares) {
-    advance(simulation, 1);
+    advance(simulation, frames);
     double way = 0;
     for (std::size_t v = 0; v < flat.positions.size(); ++v)
       if (flat.positions[v].x() > 1 - 1e-9)
