@@ -140,16 +140,18 @@ std::vector<VerifyCase> fabric_bending_cases() {
   return {
       {"fabric-cantilever", "a level strip bends as the heavy elastica, on any mesh", romero, false,
        [] { return cantilever({10}, {5}); }},
-      {"fabric-cantilever-fine", "the same on finer meshes", romero, true,
+      {"fabric-cantilever-fine", "a level strip bends as the heavy elastica, on finer meshes", romero, true,
        [] { return cantilever({20, 40}, {5}); }},
-      {"fabric-cantilever-curve", "and from small to large loads", romero, true,
-       [] { return cantilever({20}, {1, 2, 10, 20, 50}); }},
+      {"fabric-cantilever-curve", "a level strip bends as the heavy elastica from small to large loads",
+       romero, true, [] { return cantilever({20}, {1, 2, 10, 20, 50}); }},
       {"fabric-torsion", "a strip resists twisting as a plate, on any mesh", plate, false,
        [] { return torsion({10}); }},
-      {"fabric-torsion-fine", "the same on finer meshes", plate, true, [] { return torsion({20, 40}); }},
+      {"fabric-torsion-fine", "a strip resists twisting as a plate, on finer meshes", plate, true,
+       [] { return torsion({20, 40}); }},
       {"fabric-buckling", "a strip on edge buckles as a plate, on any mesh", morley, false,
        [] { return buckling({10}); }},
-      {"fabric-buckling-fine", "the same on finer meshes", morley, true, [] { return buckling({20, 40}); }},
+      {"fabric-buckling-fine", "a strip on edge buckles as a plate, on finer meshes", morley, true,
+       [] { return buckling({20, 40}); }},
   };
 }
 

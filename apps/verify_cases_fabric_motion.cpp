@@ -80,7 +80,8 @@ std::vector<VerifyCase> fabric_motion_cases() {
   return {
       {"fabric-swing", "a hanging sheet swings with the period and decay of implicit Euler, on any mesh",
        chain, false, [] { return swing({10}); }},
-      {"fabric-swing-fine", "the same on finer meshes", chain, true, [] { return swing({20, 40}); }},
+      {"fabric-swing-fine", "a hanging sheet swings as a chain, on finer meshes", chain, true,
+       [] { return swing({20, 40}); }},
   };
 }
 

@@ -122,11 +122,11 @@ std::vector<VerifyCase> fabric_plate_cases() {
   return {
       {"fabric-plate", "a square plate on hinges deflects under pressure as plate theory says, on any mesh",
        "Navier's series; Timoshenko 1959", false, [] { return plate({8}); }},
-      {"fabric-plate-fine", "the same on finer meshes", "Navier's series; Timoshenko 1959", true,
-       [] { return plate({16, 32}); }},
-      {"fabric-cylinder", "a cylinder pinched in its middle deflects", "Takemoto & Cook 1973", true,
-       [] { return cylinder({20, 40, 80}); }},
-      {"fabric-twisted", "a twisted strip deflects", "MacNeal & Harder 1985", true,
+      {"fabric-plate-fine", "a square plate deflects as plate theory says, on finer meshes",
+       "Navier's series; Timoshenko 1959", true, [] { return plate({16, 32}); }},
+      {"fabric-cylinder", "a cylinder pinched in its middle deflects as a thin shell", "Takemoto & Cook 1973",
+       true, [] { return cylinder({20, 40, 80}); }},
+      {"fabric-twisted", "a twisted strip deflects as a thin shell", "MacNeal & Harder 1985", true,
        [] { return twisted({10, 20, 40}); }},
   };
 }

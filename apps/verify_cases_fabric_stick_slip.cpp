@@ -11,14 +11,15 @@
 namespace muslin::app {
 namespace {
 
-constexpr double soft_thickness = 1.0 / 32;  // of the length: forces do not depend on it
+constexpr double soft_thickness = 1.0 / 32;  // of the length: K L²/D = 12,288
 constexpr double contact_distance = 5e-4;    // of the length
 
 /// A strip of length 1 clamped at x = 0 along x, bent, whose tip is held on the x axis and free to turn.
 class PinnedElastica {
  public:
-  /// Whose tip turns by this angle. The forces N along and T across, over EI/L², solve θ'' = −N sin θ + T cos
-  /// θ from the tip, where θ' = 0, to the clamp, where θ = 0, on the axis. Shooting with Newton's method.
+  /// The strip's tip turns by this angle. The forces N along and T across, over EI/L², solve θ'' = −N sin θ +
+  /// T cos θ from the tip, where θ' = 0, to the clamp, where θ = 0, on the axis. Shooting with Newton's
+  /// method.
   explicit PinnedElastica(double tip_angle) : across_(0.178 * buckling * tip_angle) {
     for (int i = 0; i < 30; ++i) {
       const double small = 1e-5;
@@ -164,8 +165,8 @@ std::vector<VerifyCase> fabric_stick_slip_cases() {
   return {
       {"fabric-stick-slip", "a clamped strip pushed against a floor sticks until T = mu N, on any mesh",
        source, true, [] { return stick_slip({10, 20}, {0.1}); }},
-      {"fabric-stick-slip-curve", "and at other pushes", source, true,
-       [] { return stick_slip({10}, {0.05, 0.2}); }},
+      {"fabric-stick-slip-curve", "a clamped strip sticks until T = mu N at small and large friction", source,
+       true, [] { return stick_slip({10}, {0.05, 0.2}); }},
   };
 }
 

@@ -56,6 +56,6 @@ std::string fabric_pin(double x0, double y0, double x1, double y1, const std::st
 
 inline constexpr double fabric_density = 0.2;     ///< [kg/m²]
 inline constexpr double fabric_width = 0.25;      ///< of strips, over their length
-inline constexpr double fabric_thickness = 0.01;  ///< the same: K L²/D = 1.2e5
+inline constexpr double fabric_thickness = 0.01;  ///< over their length: K L²/D = 1.2e5
 
 }  // namespace muslin::app
