@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -75,8 +76,11 @@ class KnownFabric {
   TensileTest bias() {
     const SheetStress s = stress_of(sheet);
     const double nu = sheet.poisson, rest = 1 - nu * nu, p = s.warp.slope(0), q = s.weft.slope(0);
-    const MeasuredMembraneLaw::Constants c{s.warp.plus(nu * nu / rest * p), s.weft.plus(nu * nu / rest * q),
-                                           s.shear, nu * std::sqrt(p * q) / rest};
+    constexpr double elastic = std::numeric_limits<double>::infinity();
+    const MeasuredMembraneLaw::Constants c{{p / rest, nu * std::sqrt(p * q) / rest, q / rest, elastic, elastic},
+                                           s.warp.plus(-p),
+                                           s.weft.plus(-q),
+                                           s.shear};
     const auto energy = [&](double stretch, double uu, double vv) {
       const double along = (stretch * stretch - 1) / 2;  // E_mm
       return MeasuredMembraneLaw::energy(c, 1, {2 * uu + 1, 2 * vv + 1, 2 * along - uu - vv});
