@@ -1,5 +1,6 @@
 // Compressed threads buckle: the relaxed energy is the least over the strains that folds take up, convex with
-// continuous stresses, elastic under tension; folds across the mesh cost no more than bending.
+// continuous stresses, elastic under tension; folds across the mesh cost a quarter of the elastic energy at
+// most.
 #include "muslin/energy/cell_buckling.hpp"
 
 #include <algorithm>

@@ -25,23 +25,24 @@ struct BucklingRigidity {
   double weft = std::numeric_limits<double>::infinity();
 };
 
-/// Two families of threads of a triangle.
+/// The constants of two families of threads of a triangle.
 struct Threads {
   double c11, c12, c22;         ///< C: positive semidefinite [N/m]
   double load_warp, load_weft;  ///< n times the triangle's area [N·m]
 };
 
-/// A triangle of area A is half of a square of edges h, h² = 2 A: the load is π² D/(2 A).
+/// Returns n times the area A of a triangle [N·m]. It is half of a square of edges h, h² = 2 A: n = π² D/(2
+/// A).
 inline double buckling_load(double rigidity) { return std::numbers::pi * std::numbers::pi / 2 * rigidity; }
 
-/// Of two families of threads.
+/// The energy of two families of threads per area, and its derivatives by their strains e.
 struct ThreadState {
   double twice_energy;   ///< 2 ψ [N/m]
   double uu, vv;         ///< ∂ψ/∂e [N/m]
   double c11, c12, c22;  ///< ∂²ψ/∂e² [N/m]
 };
 
-/// Of the elastic energy, in buckled threads: keeps the stiffness of a compressed sheet positive.
+/// Share of the elastic energy that buckled threads keep, so that the stiffness stays positive.
 constexpr double elastic_share = 0.005;
 
 MUSLIN_INLINE ThreadState state_of(const Threads& t, double area, double e1, double e2) {
