@@ -2,11 +2,11 @@
 // T_u and T_v the stresses that a strip pulled along warp or weft has over its strain, free to narrow, K_u
 // and K_v their slopes at rest and ν Poisson's ratio,
 //
-//   C₁₁ = K_u/(1−ν²),   C₂₂ = K_v/(1−ν²),   C₁₂ = ν √(K_u K_v)/(1−ν²),   f' = T_u − K_u E_uu,   g' = T_v −
-//   K_v E_vv,
+//   C₁₁ = K_u/(1−ν²),   C₂₂ = K_v/(1−ν²),   C₁₂ = ν √(K_u K_v)/(1−ν²),
+//   f' = T_u − K_u E_uu,   g' = T_v − K_v E_vv,
 //
-// so that such a strip has exactly T_u or T_v, and narrows in proportion to its strain. The sheet is stable,
-// ψ being convex, for ν up to highest_poisson (energy/sheet_stress.hpp). docs/theory/shells.md.
+// so that such a strip has exactly T_u or T_v, and narrows in proportion to its strain. Unless threads
+// buckle, ψ is convex for ν up to highest_poisson (energy/sheet_stress.hpp). docs/theory/shells.md.
 #pragma once
 
 #include <memory>
