@@ -121,7 +121,7 @@ double lateral_buckling(const FabricMesh& of, double expected) {
 }
 
 std::vector<Comparison> buckling(std::initializer_list<int> cells) {
-  // Of a plate four times as long as wide, ν = ¼, by Morley's element, extrapolated
+  // That of a plate four times as long as wide, ν = ¼, by Morley's element, extrapolated
   // (tests/energy/plate_test). A strip without width has 12.854 √(2/(1+ν)) (1−ν²) = 15.24.
   const double expected = 18.457;
   std::vector<Comparison> numbers;

@@ -137,7 +137,7 @@ TEST_F(ShellModel, LongEdgesAreAWarningIfTheMembraneLocks) {
   const auto json = nlohmann::json::parse(describe_json(silk));
   EXPECT_NEAR(json["bodies"][0]["trusted_edge"].get<double>(), 0.00556, 1e-5);
   EXPECT_EQ(json["warnings"].size(), 1u);
-  // What the warning advises removes it.
+  // The advice of the warning removes it.
   const Model buckling = build(of("silk"));
   EXPECT_THAT(buckling.warnings, testing::IsEmpty());
   EXPECT_THAT(describe_text(buckling), HasSubstr("as the fabric's with edges of up to 0.008 m"));

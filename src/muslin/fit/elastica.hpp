@@ -11,12 +11,12 @@
 
 namespace muslin {
 
-/// Of a strip clamped horizontally whose end is seen from the clamp at `angle` below the horizontal [rad],
-/// 0 < angle < π/2.
+/// Returns the bending length of a strip clamped horizontally whose end is seen from the clamp at `angle`
+/// below the horizontal [rad], 0 < angle < π/2.
 double cantilever_bending_length(double overhang, double angle);
 
-/// Of a loop of a strip of this length that hangs `height` below its grip. Errors: input, if no bending
-/// stiffness makes such a loop.
+/// Returns that of a loop of a strip of this length that hangs `height` below its grip. Errors: input, if no
+/// bending stiffness makes such a loop.
 double loop_bending_length(LoopShape shape, double strip_length, double height);
 
 }  // namespace muslin

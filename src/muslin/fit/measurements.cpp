@@ -23,7 +23,7 @@ constexpr Range rigidities{1e-8, 0.1, false};   // N·m
 
 const std::vector<std::string> thread_words = {"warp", "weft", "bias"};
 
-/// What the keys of a test's table say besides its settings: a table of points and its units.
+/// The keys of a test's table besides its settings: a table of points and its units.
 struct PointKeys {
   std::vector<Vec2> points;
   std::string file;

@@ -100,7 +100,7 @@ void hold_strips(Measurements& m, const Inversion& inversion) {
   if (poisson <= 0) return;
   const double warp = slope_at_rest(inversion, "membrane_warp", "warp_curve");
   const double weft = slope_at_rest(inversion, "membrane_weft", "weft_curve");
-  // Of the force over an angle in degrees.
+  // The slope of the force over an angle in degrees.
   const FittedValue* shear_modulus = find_value(inversion, "membrane_shear");
   const double shear =
       shear_modulus != nullptr
