@@ -1,5 +1,6 @@
 #include "muslin/energy/measured_membrane.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -19,11 +20,13 @@ MeasuredMembraneLaw::Constants constants_of(const SheetStress& stress, double po
           "a sheet of these curves and this Poisson ratio is unstable", "give 0 to highest_poisson");
   const double warp = stress.warp.slope(0), weft = stress.weft.slope(0);
   const double square = poisson * poisson, narrowed = square / (1 - square);
-  return {{warp + narrowed * warp, poisson * std::sqrt(warp * weft) / (1 - square), weft + narrowed * weft,
-           buckling_load(rigidity.warp), buckling_load(rigidity.weft)},
-          stress.warp.plus(-warp),
-          stress.weft.plus(-weft),
-          stress.shear};
+  Threads threads{warp + narrowed * warp, poisson * std::sqrt(warp * weft) / (1 - square),
+                  weft + narrowed * weft, buckling_load(rigidity.warp), buckling_load(rigidity.weft)};
+  // So that no thread buckles while it is stretched, where its curve may soften.
+  const double load_warp = threads.load_warp, load_weft = threads.load_weft;
+  if (threads.c22 > 0) threads.load_warp = std::max(load_warp, threads.c12 / threads.c22 * load_weft);
+  if (threads.c11 > 0) threads.load_weft = std::max(load_weft, threads.c12 / threads.c11 * load_warp);
+  return {threads, stress.warp.plus(-warp), stress.weft.plus(-weft), stress.shear};
 }
 
 /// The masses hold what buckles only where the stiffest state leaves them digits.

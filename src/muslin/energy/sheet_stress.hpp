@@ -11,8 +11,8 @@ struct SheetStress {
   StressCurve warp, weft, shear;
 };
 
-/// Returns the largest Poisson's ratio with which a sheet of these stresses is stable in every state: 1
-/// unless a curve softens.
+/// Returns the largest Poisson's ratio with which a sheet of these stresses is stable at all strains while no
+/// thread buckles: 1 unless a curve softens.
 double highest_poisson(const SheetStress& stress);
 
 }  // namespace muslin
