@@ -187,7 +187,7 @@ name = "strip"
 mesh = "strip"
 model = "shell"
 warp = [1, 0, 0]
-material = "cotton"
+material = {{ areal_density = 0.1, membrane_warp = 1000, bending_warp = 1e-5 }}
 contact = false
 [[pin]]
 where = {{ plane = {{ point = [0, 0, 0], normal = [1, 0, 0], distance = 1e-6 }} }}

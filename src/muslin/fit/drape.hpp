@@ -15,7 +15,8 @@ struct DrapeOptions {
   int most = 12;  ///< of the materials that a fit tries
 };
 
-/// Returns the coefficient of a material with [shell], the mean of the drops. Errors: solver.
+/// Returns the coefficient of a material with [shell], the mean of the drops. Limits of stretch do not act.
+/// Errors: solver.
 double drape_coefficient(const Material& material, const DrapeTest& test, const DrapeOptions& options,
                          const Progress& progress = {});
 

@@ -22,7 +22,7 @@ namespace {
 constexpr double pull = 1e-3;  // strain of the simulated strip
 constexpr double kes_width = 0.2, kes_length = 0.05;
 
-/// A step so long that inertia does not matter finds the equilibrium.
+/// A step so long that inertia does not matter finds the equilibrium. The material is replaced.
 constexpr const char* strip_scene = R"(
 [time]
 frame_rate = 1e-4
@@ -35,7 +35,7 @@ name = "strip"
 mesh = "strip"
 model = "shell"
 warp = [1, 0, 0]
-material = "cotton"
+material = {{ areal_density = 0.1, membrane_warp = 1000, bending_warp = 1e-5 }}
 contact = false
 [[pin]]
 where = {{ group = "left" }}
