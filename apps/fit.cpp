@@ -22,14 +22,14 @@ struct FitArguments {
 void fit(const FitArguments& a) {
   listen_for_interrupts();
   const Measurements measurements = read_measurements(a.measurements);
-  ProgressLine line(a.quiet);
-  const Fit made = fit_fabric(measurements, a.drape, line.progress());
-  line.finish();
   const std::filesystem::path file = a.output.empty() ? measurements.name + ".toml" : a.output;
   std::error_code ignored;
   if (std::filesystem::equivalent(file, a.measurements, ignored))
     throw Error(ErrorKind::usage, {a.measurements}, "the material would replace its measurements",
                 "name another file with -o");
+  ProgressLine line(a.quiet);
+  const Fit made = fit_fabric(measurements, a.drape, line.progress());
+  line.finish();
   write_atomically(file, made.text);
   if (!a.quiet) print(fit_table(made) + file.string() + "\n");
 }

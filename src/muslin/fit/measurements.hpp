@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "muslin/api.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
 
