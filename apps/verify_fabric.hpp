@@ -19,7 +19,8 @@ struct FabricMesh {
 
   /// The name of a quantity on this mesh, such as "crossed 40: energy".
   std::string label(const std::string& quantity) const;
-  /// The accuracy of an element of second order: 1 % at 1/40 of the length, 2 % on irregular meshes.
+  /// The relative accuracy of an element of second order: 1 % with 40 cells, 2 % on irregular meshes, times
+  /// (40/cells)².
   double tolerance() const;
   /// A comparison by this tolerance.
   Comparison compare(const std::string& quantity, double reference, double measured) const;
@@ -47,8 +48,7 @@ Mesh bent_strip(const FabricMesh& of, double width, bool clamped,
                 const std::function<Vec3(const Vec3&)>& shape);
 
 /// A body "sheet.obj" of 0.2 kg/m² with warp along x. Isotropic: its bending rigidity [N m] and membrane
-/// stiffness [N/m] belong to a sheet of this thickness [m].
-/// More keys of the body may follow.
+/// stiffness [N/m] belong to a sheet of this thickness [m]. More keys of the body may follow.
 std::string fabric_body(double rigidity, double poisson, double thickness);
 
 /// Pins the vertices of a box between two corners, in the plane z = 0 [m].

@@ -387,7 +387,8 @@ class Inverter {
   Inversion result_;
 };
 
-/// Factors by which the specimens differ from the curve of all, as tests of the same direction.
+/// Fits a factor of the curve through all specimens of a direction to each of them; the standard deviation of
+/// these factors becomes the uncertainty of each, unless a test states its own.
 template <class Test, class Same>
 void scatter_of(std::vector<Test>& tests, const Same& same) {
   for (const Test& first : tests) {

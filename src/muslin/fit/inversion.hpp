@@ -19,8 +19,8 @@ struct FittedValue {
   std::string from;                    ///< the measurement, or the rule of a guess
   bool guess = false;
   std::optional<double> plus_minus = {};  ///< standard uncertainty; of a curve: as a share of its forces
-  std::optional<double> residual =
-      {};  ///< of a curve: root of the squares of what is left over those measured
+  /// Of a curve: root of the squares of what is left over those measured.
+  std::optional<double> residual = {};
 };
 
 struct Inversion {

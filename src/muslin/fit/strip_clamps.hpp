@@ -1,6 +1,6 @@
-// The clamps of a strip test keep the strip from narrowing beside them. A long strip pulls as one that is
-// free to narrow, with S = f(E); one much wider than long as one that is held everywhere, with S = f(E) +
-// ν²/(1 − ν²) f'(0) E (docs/theory/shells.md). Between them lies a share of the second term.
+// The clamps of a strip test keep the strip from narrowing beside them. A long strip has the stress of one that
+// is free to narrow, S = f(E); one much wider than long that of one held everywhere, S = f(E) +
+// ν²/(1 − ν²) f'(0) E (docs/theory/shells.md). Other strips have a share of the second term.
 #pragma once
 
 #include "muslin/fit/inversion.hpp"
