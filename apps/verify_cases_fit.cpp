@@ -24,7 +24,7 @@ std::vector<Comparison> bending_from_a_drape() {
     with_bending.bending.push_back(test);
   }
   DrapeOptions fine;
-  fine.rings = 9;
+  fine.rings = 12;
   fine.drops = 3;
   m.drape->coefficient->value = *fit_fabric(with_bending, fine).simulated_drape;
   const Fit fit = fit_fabric(m);

@@ -120,7 +120,7 @@ FACES = [[0, 1, 2, 3]]
         ({"uvs": SQUARE[:2, :2]}, "2 uvs for 4 vertices"),
         ({"uvs": SQUARE[:, :2], "corner_uvs": [0, 1]}, "2 corner_uvs for 4 corners"),
         ({"uvs": SQUARE[:, :2], "corner_uvs": [0, 1, 2, 4]}, "no number 4"),
-        ({"corner_uvs": [0, 1, 2, 3]}, "without uvs"),
+        ({"corner_uvs": [0, 1, 2, 3]}, "needs uvs"),
         ({"groups": {"a b": [0]}}, "cannot be the name"),
         ({"groups": {"a": [7]}}, r"groups\[a\]: there is no number 7"),
         ({"face_groups": {"a": [1]}}, r"face_groups\[a\]: there is no number 1"),

@@ -48,6 +48,12 @@ TEST(FitCommand, ExitCodesTellWhatIsWrong) {
   EXPECT_EQ(onto_itself.code, 2);
   EXPECT_THAT(onto_itself.err, HasSubstr("name another file with -o"));
   EXPECT_EQ(bytes_of(scratch / "m.toml"), sheet);
+  EXPECT_EQ(run(scratch, {"fit", file, "-o", (scratch / "no_folder/cloth.toml").string()}).code, 5);
+  EXPECT_EQ(run(scratch, {"fit", file, "-o", scratch.path().string()}).code, 5);
+  write_bytes(scratch / "m.toml", "name = \"../cloth\"\nareal_density = 0.12\n");
+  const Outcome outside = run(scratch, {"fit", file});
+  EXPECT_EQ(outside.code, 2);
+  EXPECT_THAT(outside.err, HasSubstr("its `name` is not that of a file; name a file with -o"));
 }
 
 TEST(FitCommand, ReadsTheExample) {

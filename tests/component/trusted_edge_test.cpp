@@ -60,6 +60,7 @@ TEST(TrustedEdge, IsThatOfFoldsIfThreadsBuckle) {
   EXPECT_TRUE(std::isinf(silk.unlocked));
   EXPECT_NEAR(silk.length(), 0.5 * std::cbrt(std::sqrt(6e-12) / (9.81 * 0.06)), 1e-9);
   EXPECT_TRUE(std::isinf(trusted_edge(sheet(0, 1e-5), Compression::elastic).unlocked));
+  EXPECT_TRUE(std::isinf(trusted_edge(sheet(0, 0), Compression::elastic).unlocked));
   EXPECT_EQ(trusted_edge(sheet(1e6, 0), Compression::elastic).length(), 0);
 }
 

@@ -308,6 +308,20 @@ TEST(Fit, RulesFillWhatIsNotMeasured) {
   EXPECT_EQ(fit.material.guesses.size(), 9u);
 }
 
+TEST(Fit, SofteningCurvesGetAPoissonRatioThatIsStable) {
+  // The part that is nearly flat has another slope when it is written with six digits.
+  Measurements m;
+  m.name = "soft";
+  m.areal_density = exactly(0.12);
+  TensileTest strip;
+  strip.direction = Thread::warp;
+  strip.points = {{0.079, 20.1}, {0.091, 20.55}, {0.187, 20.59}, {0.269, 30.9}};
+  m.tensile = {strip};
+  const Fit fit = fit_fabric(m);
+  EXPECT_GT(fit.material.shell->poisson, 0);
+  EXPECT_LE(fit.material.shell->poisson, highest_poisson(stress_of(*fit.material.shell)));
+}
+
 TEST(Fit, LowBiasIsRaisedToWhatResistsTwisting) {
   Measurements m;
   m.name = "twist";

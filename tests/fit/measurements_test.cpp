@@ -172,6 +172,17 @@ TEST(Measurements, BadPointsHaveTheirLine) {
   }
 }
 
+TEST(Measurements, FirstLinesOfSpreadsheetsAreRead) {
+  const Scratch scratch;
+  for (const char* text : {"\xef\xbb\xbf" "0.01,5\n0.02,15\n", "+0.01;+5\r\n0.02;15\r\n",
+                           "\"0.01\",\"5\"\n\"0.02\",\"15\"\n", "strain,force\n%,N\n0.01\t5\n0.02\t15\n"}) {
+    write_bytes(scratch / "p.csv", text);
+    EXPECT_THAT(read_points(scratch / "p.csv"), testing::ElementsAre(Vec2(0.01, 5), Vec2(0.02, 15))) << text;
+  }
+  write_bytes(scratch / "p.csv", "nan,5\n0.02,15\n");
+  EXPECT_THROW(read_points(scratch / "p.csv"), Error);
+}
+
 TEST(Measurements, GuideHasEveryKey) {
   std::ifstream file(std::string(MUSLIN_SOURCE_DIR) + "/docs/guide/fitting.md");
   std::stringstream guide;

@@ -64,7 +64,7 @@ TEST(BendingFrictionKeys, BelongToMaterialFilesAndTheirGuesses) {
   EXPECT_EQ(numbers.at("bending_friction_weft").value, 1e-4);
   EXPECT_FALSE(numbers.at("bending_friction_weft").guess);
   EXPECT_EQ(numbers.at("bending_friction_curvature").unit, "1/m");
-  EXPECT_EQ(shell_numbers(find_material("cotton")).size(), numbers.size() - 3);
+  EXPECT_EQ(shell_numbers(find_material("silk")).size(), numbers.size() - 3);
 }
 
 TEST(BendingFrictionKeys, WrongNumbersAreErrors) {

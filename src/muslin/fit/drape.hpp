@@ -10,7 +10,7 @@
 namespace muslin {
 
 struct DrapeOptions {
-  int rings = 6;  ///< of cells from the support to the edge of the cloth
+  int rings = 9;  ///< of cells from the support to the edge of the cloth
   int drops = 2;  ///< simulated drapes whose mean is taken, each from another small unevenness
   int most = 12;  ///< of the materials that a fit tries
 };

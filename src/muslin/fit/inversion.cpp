@@ -152,11 +152,13 @@ class Inverter {
     add(*value);
   }
 
-  /// The stress curve of a thread as fitted.
+  /// The stress curve of a thread as it will be written, so that a Poisson's ratio that is stable stays so.
   StressCurve stress_curve_of(const char* modulus, const char* curve) const {
-    if (const FittedValue* value = find_value(result_, modulus)) return StressCurve(value->value);
+    const auto written = [](double x) { return std::stod(written_number(x)); };
+    if (const FittedValue* value = find_value(result_, modulus)) return StressCurve(written(value->value));
     std::vector<Vec2> points;
-    for (const Vec2& point : *find_value(result_, curve)->curve) points.push_back(stress_point(point));
+    for (const Vec2& point : *find_value(result_, curve)->curve)
+      points.push_back(stress_point({written(point[0]), written(point[1])}));
     return StressCurve(points);
   }
 
@@ -417,6 +419,8 @@ void scatter_of(std::vector<Test>& tests, const Same& same) {
 }
 
 }  // namespace
+
+std::string written_number(double value) { return fmt::format("{:.6g}", value); }
 
 const FittedValue* find_value(const Inversion& inversion, const std::string& key) {
   const auto at = std::find_if(inversion.values.begin(), inversion.values.end(),

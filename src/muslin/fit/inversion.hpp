@@ -10,6 +10,9 @@
 
 namespace muslin {
 
+/// A number as material files have it, with six digits.
+std::string written_number(double value);
+
 /// A key of [shell] and how its value was found.
 struct FittedValue {
   std::string key;

@@ -18,10 +18,11 @@ std::string toml_text(const std::string& text) {
 }
 
 std::string value_text(const FittedValue& value) {
-  if (!value.curve) return fmt::format("{:.6g}", value.value);
+  if (!value.curve) return written_number(value.value);
   std::string points;
   for (const Vec2& point : *value.curve)
-    points += fmt::format("{}[{:.6g}, {:.6g}]", points.empty() ? "" : ", ", point[0], point[1]);
+    points += fmt::format("{}[{}, {}]", points.empty() ? "" : ", ", written_number(point[0]),
+                          written_number(point[1]));
   return "[" + points + "]";
 }
 

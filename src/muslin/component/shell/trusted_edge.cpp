@@ -30,9 +30,9 @@ double fold_radius(const ShellMaterial& material) {
 TrustedEdge trusted_edge(const ShellMaterial& material, Compression compression) {
   const double radius = fold_radius(material);
   TrustedEdge edge{radius / edges_of_fold, std::numeric_limits<double>::infinity()};
-  if (compression == Compression::buckling) return edge;
   const SheetStress stress = stress_of(material);
   const double stiffness = mean(stress.warp.slope(0), stress.weft.slope(0));
+  if (compression == Compression::buckling || !(stiffness > 0)) return edge;
   edge.unlocked =
       std::pow(energy_ratio * 576 * bending_stiffness(material) * radius * radius / stiffness, 0.25);
   return edge;
