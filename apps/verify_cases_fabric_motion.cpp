@@ -51,6 +51,7 @@ std::vector<Comparison> swing(std::initializer_list<int> cells) {
                     "[[force]]\ntype = \"gravity\"\nacceleration = [0, 0, 0.05]\nuntil = {:.17g}\n",
                     gravity, 10.5 * step));
     std::vector<double> mode;
+    mode.reserve(sheet.mesh.positions.size());
     for (const Vec3& p : sheet.mesh.positions)
       mode.push_back(std::cyl_bessel_j(0, j * std::sqrt(std::max(0.0, 1 - p.x()))));
     advance(simulation, 12);

@@ -354,7 +354,9 @@ translate = [0, 0.33, 0]
 )"}};
   std::vector<Comparison> numbers;
   for (const auto& [name, body] : thrown) {
-    Simulation simulation = experiment.start(floor + body + weight);
+    std::string scene = floor;
+    scene.append(body).append(weight);
+    Simulation simulation = experiment.start(scene);
     Watch watch(simulation);
     watch.advance(simulation, 12);
     numbers.push_back({fmt::format("energy gained over energy of the fall, {}", name), 0,

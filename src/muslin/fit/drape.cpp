@@ -126,13 +126,15 @@ double drape_coefficient(const Material& material, const DrapeTest& test, const 
                          const Progress& progress) {
   const Ring ring(test, options.rings);
   Scene scene = parse_scene(drape_scene, "drape.toml");
+  ShellMaterial numbers = material.shell.value_or(ShellMaterial());
+  numbers.mass_damping = settling;
   scene.bodies.front().material = material;
-  scene.bodies.front().material.shell->mass_damping = settling;
+  scene.bodies.front().material.shell = numbers;
   scene.meshes["cloth"] = std::make_shared<const Mesh>(ring.mesh);
   const auto model = std::make_shared<const Model>(build_model(scene));
   const double disc = ring.inner * ring.inner * std::numbers::pi;
   const double whole = std::pow(ring.inner + ring.width, 2) * std::numbers::pi;
-  const double fall = material.shell->areal_density * (whole - disc) * 9.8 * ring.width;  // J
+  const double fall = numbers.areal_density * (whole - disc) * 9.8 * ring.width;  // J
 
   double sum = 0;
   for (int drop = 0; drop < options.drops; ++drop) {

@@ -23,6 +23,7 @@ Measured read_measured(const schema::Key& key, const TomlTable& table, double sc
   Measured result;
   if (value.type == TomlValue::Type::array) {
     std::vector<double> repeats;
+    repeats.reserve(value.items.size());
     for (const TomlValue& item : value.items)
       repeats.push_back(to_number(item, "a number of " + name, key.unit, key.range));
     if (repeats.empty())

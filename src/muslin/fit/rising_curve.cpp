@@ -40,6 +40,7 @@ std::vector<double> weights_at(double x, const std::vector<double>& knots) {
 
 std::vector<Vec2> points_of(const std::vector<double>& knots, const std::vector<double>& increments) {
   std::vector<Vec2> points;
+  points.reserve(knots.size());
   double sum = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) points.emplace_back(knots[k], sum += increments[k]);
   return points;
@@ -105,10 +106,12 @@ RisingCurve fit_rising_curve(std::vector<Vec2> data) {
   double greatest = 0;
   for (const Vec2& point : data) greatest = std::max(greatest, point[1]);
   std::vector<double> least;
+  least.reserve(knots.size());
   for (std::size_t k = 0; k < knots.size(); ++k)
     least.push_back(least_share * greatest / knots.back() * (knots[k] - (k == 0 ? 0 : knots[k - 1])));
 
   std::vector<std::vector<double>> rows;
+  rows.reserve(data.size());
   for (const Vec2& point : data) rows.push_back(weights_at(point[0], knots));
   const auto straight = [&](std::size_t i, const std::vector<double>& increments) {
     double sum = 0;
@@ -119,6 +122,7 @@ RisingCurve fit_rising_curve(std::vector<Vec2> data) {
   RisingCurve best;
   for (int round = 0; round <= corrections; ++round) {
     std::vector<double> right;
+    right.reserve(data.size());
     for (std::size_t i = 0; i < data.size(); ++i) right.push_back(data[i][1] - bulge[i] - straight(i, least));
     std::vector<double> increments = non_negative_least_squares(rows, right);
     for (std::size_t k = 0; k < knots.size(); ++k) increments[k] += least[k];

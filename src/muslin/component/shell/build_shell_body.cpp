@@ -74,7 +74,7 @@ class ShellBuilder {
       int axis;
       rest.bounds().sizes().maxCoeff(&axis);
       weave.warp = Vec3::Unit(axis);
-      const ShellMaterial& m = *settings_.material.shell;
+      const ShellMaterial& m = body_.material();
       if (m.membrane_warp != m.membrane_weft || m.warp_curve != m.weft_curve ||
           m.bending_warp != m.bending_weft || m.bending_warp_curve != m.bending_weft_curve) {
         say(fmt::format(
@@ -114,7 +114,7 @@ class ShellBuilder {
   /// Warns where the membrane is what limits the length of edges: all coarse meshes miss folds, but then they
   /// hang too softly, as users expect.
   void warn_of_long_edges() {
-    const TrustedEdge trusted = trusted_edge(*settings_.material.shell, own_.compression);
+    const TrustedEdge trusted = trusted_edge(body_.material(), own_.compression);
     const double edge = body_.shell.mean_edge, size = body_.mesh.bounds().sizes().maxCoeff();
     if (trusted.unlocked >= trusted.resolved || edge <= trusted.unlocked || size < folding_size * edge)
       return;

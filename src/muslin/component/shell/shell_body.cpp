@@ -13,6 +13,7 @@
 #include "muslin/component/shell/trusted_edge.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/core/disjoint_sets.hpp"
+#include "muslin/core/error.hpp"
 #include "muslin/core/hash.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/io/mesh_file.hpp"
@@ -45,9 +46,15 @@ VtkGrid triangles(const Shell& shell, const Mesh& mesh) {
 
 }  // namespace
 
+const ShellMaterial& ShellBody::material() const {
+  if (!settings.material.shell)
+    throw Error(ErrorKind::usage, "the material of a shell has no numbers of shells", "set its `shell`");
+  return *settings.material.shell;
+}
+
 std::vector<double> ShellBody::masses() const {
   std::vector<double> masses = shell.vertex_areas;
-  for (double& m : masses) m *= settings.material.shell->areal_density;
+  for (double& m : masses) m *= material().areal_density;
   return masses;
 }
 
@@ -67,7 +74,7 @@ std::vector<int> ShellBody::parts() const {
 std::optional<ContactPart> ShellBody::contact_part() const {
   if (!settings.contact) return std::nullopt;
   const Triangulation cut = triangulate(mesh);
-  const SheetStress stress = stress_of(*settings.material.shell);
+  const SheetStress stress = stress_of(material());
   ContactPart part;
   part.edge = mean_edge(mesh.positions, cut.triangles);
   part.size = mesh.bounds().sizes().maxCoeff();
@@ -89,7 +96,7 @@ std::uint64_t ShellBody::shape_hash(std::uint64_t seed) const {
 }
 
 std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
-  const ShellMaterial& m = *settings.material.shell;
+  const ShellMaterial& m = material();
   const std::array numbers = {m.areal_density,     m.membrane_warp,   m.membrane_weft,
                               m.membrane_shear,    m.poisson,         m.bending_warp,
                               m.bending_weft,      m.bending_bias,    m.mass_damping,
@@ -125,7 +132,7 @@ std::string ShellBody::description_json() const {
   json["hinges"] = s.hinges;
   json["area"] = shell.area;
   json["mean_edge"] = shell.mean_edge;
-  json["trusted_edge"] = trusted_edge(*settings.material.shell, own().compression).length();
+  json["trusted_edge"] = trusted_edge(material(), own().compression).length();
   if (own().stretch_limit) json["stretch_limit"] = *own().stretch_limit;
   json["warp"] = own().warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
   json["material"] = settings.material.name;
@@ -136,7 +143,7 @@ std::string ShellBody::description_json() const {
 
 std::string ShellBody::description() const {
   const BodyStatistics& s = statistics;
-  const ShellMaterial& m = *settings.material.shell;
+  const ShellMaterial& m = material();
   const SheetStress stress = stress_of(m);
   const SheetMoments moments = moments_of(m);
   std::string text =

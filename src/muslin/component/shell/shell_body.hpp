@@ -43,6 +43,8 @@ class ShellBody final : public Component {
   std::string description_json() const override;
   std::string description() const override;
 
+  /// The numbers of its material. Errors: usage, if the material has none of shells.
+  const ShellMaterial& material() const;
   const ShellBodySettings& own() const { return settings.own.as<ShellBodySettings>(); }
 };
 

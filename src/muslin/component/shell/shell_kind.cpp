@@ -60,7 +60,7 @@ Material read_table(const TomlTable& table, const BodySettings& /*body*/,
   MaterialInput input;
   if (table.has("base")) {
     material = base_material(material_use, table, folder);
-    input.base_shell = input.shell = *material.shell;
+    if (material.shell) input.base_shell = input.shell = *material.shell;
   }
   input_table().read(table, input);
   material.shell = input.shell;
@@ -99,13 +99,14 @@ void finish(const TomlTable& table, const std::filesystem::path& folder, BodySet
             std::vector<std::string>& warnings) {
   read_body_material(material_use, table, folder, body);
   std::optional<double>& limit = body.own.as<Own>().stretch_limit;
-  if (!limit) limit = body.material.shell->stretch_limit;
+  const ShellMaterial numbers = body.material.shell.value_or(ShellMaterial());
+  if (!limit) limit = numbers.stretch_limit;
   if (limit && *limit < low_stretch_limit) {
     warnings.push_back(fmt::format(
         "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",
         table.title(), low_stretch_limit, low_stretch_limit));
   }
-  if (body.material.shell->membrane_shear == 0 && !body.material.shell->shear_curve)
+  if (numbers.membrane_shear == 0 && !numbers.shear_curve)
     warnings.push_back(table.title() + ": a material without `membrane_shear` does not resist shear");
 }
 

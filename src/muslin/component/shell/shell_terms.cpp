@@ -20,7 +20,7 @@ namespace {
 class ShellTerms {
  public:
   explicit ShellTerms(ShellBody& body)
-      : body_(body), material_(*body.settings.material.shell), stress_(stress_of(material_)) {}
+      : body_(body), material_(body.material()), stress_(stress_of(material_)) {}
 
   void add(std::span<const std::uint8_t> held) {
     const ShellMaterial& m = material_;
