@@ -136,18 +136,18 @@ class Inverter {
     for (const Vec2& point : fitted.points) value.curve->push_back(as_measured(point));
   }
 
+  /// The value of the other thread, or else a usual one.
+  static FittedValue guess_from(const std::optional<FittedValue>& other, FittedValue usual) {
+    FittedValue value = other.value_or(std::move(usual));
+    if (other) value.from = "as the other thread";
+    value.residual.reset();
+    value.guess = true;
+    return value;
+  }
+
   void add_membrane(const char* modulus, const char* curve, std::optional<FittedValue> value,
                     const std::optional<FittedValue>& other) {
-    if (!value) {
-      value = other;
-      if (value) {
-        value->from = "as the other thread";
-        value->residual.reset();
-      } else {
-        value = FittedValue{modulus, usual_modulus, {}, "N/m", "a usual modulus"};
-      }
-      value->guess = true;
-    }
+    if (!value) value = guess_from(other, {modulus, usual_modulus, {}, "N/m", "a usual modulus"});
     value->key = value->curve ? curve : modulus;
     add(*value);
   }
@@ -318,15 +318,9 @@ class Inverter {
   void add_bending(const std::string& key, std::optional<FittedValue> value,
                    const std::optional<FittedValue>& other, double usual) {
     if (!value) {
-      value = other;
-      if (value) {
-        value->from = "as the other thread";
-        value->residual.reset();
-      } else {
-        const double rigidity = usual * m_.areal_density->value / usual_density;
-        value = FittedValue{key, rigidity, {}, "N·m", "the median of 618 fabrics, times the areal density"};
-      }
-      value->guess = true;
+      const double rigidity = usual * m_.areal_density->value / usual_density;
+      value =
+          guess_from(other, {key, rigidity, {}, "N·m", "the median of 618 fabrics, times the areal density"});
     }
     value->key = value->curve ? key + "_curve" : key;
     add(*value);

@@ -22,7 +22,7 @@ struct FittedValue {
   std::string from;                    ///< the measurement, or the rule of a guess
   bool guess = false;
   std::optional<double> plus_minus = {};  ///< standard uncertainty; of a curve: as a share of its forces
-  /// Of a curve: root of the squares of what is left over those measured.
+  /// Misfit of a curve: the root of Σ (measured − fitted)² / Σ measured² of its stresses; none of a number.
   std::optional<double> residual = {};
 };
 
