@@ -93,7 +93,7 @@ std::vector<Comparison> torsion(std::initializer_list<int> cells) {
     advance(simulation, 1);
     numbers.push_back(of.compare(
         "energy over D (1 - nu) w phi^2 / L", 1,
-        simulation.diagnostics().elastic / (rigidity * (1 - poisson) * fabric_width * angle * angle)));
+        simulation.diagnostics().elastic / (rigidity * (1 - poisson) * fabric_width * angle * angle), 0.1));
   }
   return numbers;
 }

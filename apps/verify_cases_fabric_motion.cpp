@@ -67,9 +67,10 @@ std::vector<Comparison> swing(std::initializer_list<int> cells) {
     // A step that does not converge is halved, and the next ones too.
     const int parts = simulation.diagnostics().steps;
     const double turn = rate * step / parts;
-    numbers.push_back(of.compare("period over 2 pi / w", turn / std::atan(turn), rate / found.frequency));
+    numbers.push_back(
+        of.compare("period over 2 pi / w", turn / std::atan(turn), rate / found.frequency, 0.1));
     numbers.push_back(of.compare("amplitude lost in a fiftieth of it",
-                                 1 - std::pow(1 + turn * turn, -parts / 2.0), 1 - found.decay));
+                                 1 - std::pow(1 + turn * turn, -parts / 2.0), 1 - found.decay, 0.1));
   }
   return numbers;
 }

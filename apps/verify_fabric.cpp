@@ -18,8 +18,9 @@ double FabricMesh::tolerance() const {
   return (kind == "delaunay" ? 0.02 : 0.01) * std::pow(40.0 / cells, 2);
 }
 
-Comparison FabricMesh::compare(const std::string& quantity, double reference, double measured) const {
-  return {label(quantity), reference, measured, tolerance()};
+Comparison FabricMesh::compare(const std::string& quantity, double reference, double measured,
+                               double share) const {
+  return {label(quantity), reference, measured, share * tolerance()};
 }
 
 std::vector<FabricMesh> fabric_meshes(std::initializer_list<int> cells) {
