@@ -353,14 +353,34 @@ void bind_run(nb::module_& m) {
   m.def(
       "export_run",
       [](const RunReader& run, const FilePath& file, const std::string& body, const std::string& surface,
+         int smooth, int subdivide, const std::optional<FilePath>& carry, double thickness,
          const Report& progress, const Cancel& cancel) {
-        const ExportOptions options{body, surface_called(surface)};
-        const nb::gil_scoped_release nogil;
-        export_run(run, file, options, progress_of(progress, cancel));
+        const ExportOptions options{body,      surface_called(surface),    smooth,
+                                    subdivide, carry.value_or(FilePath()), thickness};
+        ExportReport report;
+        {
+          const nb::gil_scoped_release nogil;
+          report = export_run(run, file, options, progress_of(progress, cancel));
+        }
+        nb::dict result;
+        result["frames_drawn_in"] = report.frames_drawn_in;
+        result["frames_crossing"] = report.frames_crossing;
+        result["most_crossings"] = report.most_crossings;
+        result["frame_of_most"] = report.frame_of_most;
+        return result;
       },
-      "run"_a, "file"_a, nb::kw_only(), "body"_a = "", "surface"_a = "skin", "progress"_a = nb::none(),
+      "run"_a, "file"_a, nb::kw_only(), "body"_a = "", "surface"_a = "skin", "smooth"_a = 0,
+      "subdivide"_a = 0, "carry"_a = nb::none(), "thickness"_a = 0.0, "progress"_a = nb::none(),
       "cancel"_a = nb::none(),
-      "Writes a run for other programs, by the suffix: .pc2 .mdd .obj .ply .glb .gltf .usda .vtu.");
+      nb::sig(
+          "def export_run(run: Run, file: str | os.PathLike[str], *, body: str = '', surface: str = 'skin', "
+          "smooth: int = 0, subdivide: int = 0, carry: str | os.PathLike[str] | None = None, "
+          "thickness: float = 0.0, progress: Callable[[float, str], None] | None = None, "
+          "cancel: Callable[[], bool] | None = None) -> dict[str, int]"),
+      "Writes a run for other programs, by the suffix: .pc2 .mdd .obj .ply .glb .gltf .usda .vtu.\n\n"
+      "The surface is finished in this order: rounds of smoothing that does not shrink it, levels of\n"
+      "subdivision, a finer mesh that it carries, a thickness [m]. Returns in how many frames the carried\n"
+      "mesh was drawn in to avoid crossings, and in how many it crosses all the same.");
   m.def(
       "write_stages",
       [](const FilePath& directory, const Model& model, const Report& progress, const Cancel& cancel) {

@@ -198,6 +198,19 @@ def test_exports(finished, tmp_path, suffix):
         assert (tmp_path / "flag.pc2").read_bytes() == (finished / "flag.skin.pc2").read_bytes()
 
 
+def test_finished_exports(finished, tmp_path):
+    run = muslin.Run(finished)
+    muslin.export_run(run, tmp_path / "plain.obj")
+    muslin.export_run(run, tmp_path / "fine.obj", smooth=1, subdivide=1, thickness=0.001)
+    report = muslin.export_run(run, tmp_path / "carried.obj", carry=tmp_path / "plain.0000.obj")
+    assert report["frames_crossing"] == 0
+    lines = {name: (tmp_path / f"{name}.0001.obj").read_text().count("\nf ") for name in ("plain", "fine", "carried")}
+    assert lines["fine"] >= 8 * lines["plain"]
+    assert lines["carried"] == lines["plain"]
+    with pytest.raises(muslin.UsageError, match="0 to 8"):
+        muslin.export_run(run, tmp_path / "fine.obj", subdivide=9)
+
+
 def test_exports_that_cannot_be(finished, tmp_path):
     run = muslin.Run(finished)
     with pytest.raises(muslin.UsageError, match=r"\.xyz"):

@@ -266,6 +266,48 @@ TEST_F(Export, VtuSeriesShowsTheLattice) {
   EXPECT_EQ(number_at<std::int64_t>(corners, 24), voxel[2]);
 }
 
+TEST_F(Export, FinishesTheSurfaceInEveryFormat) {
+  ExportOptions options;
+  options.smooth = 1;
+  options.subdivide = 1;
+  export_run(*run, scratch / "a.obj", options);
+  export_run(*run, scratch / "a.usda", options);
+  export_run(*run, scratch / "a.glb", options);
+  export_run(*run, scratch / "a.pc2", options);
+  const Mesh& skin = run->mesh(0, SurfaceKind::skin);
+  const Mesh fine = read_mesh(scratch / "a.0003.obj").mesh;
+  EXPECT_EQ(fine.face_count(), 4 * skin.face_count());
+  ASSERT_EQ(fine.groups.size(), skin.groups.size());
+  const std::string text = bytes_of(scratch / "a.usda");
+  EXPECT_EQ(numbers_behind(text, "faceVertexCounts = ").size(), fine.face_count());
+  const std::vector<double> points = numbers_behind(text, " 3: ", text.find("points.timeSamples"));
+  const std::vector<double> before = numbers_behind(text, " 2: ", text.find("points.timeSamples"));
+  const std::vector<double> velocities = numbers_behind(text, " 3: ", text.find("velocities.timeSamples"));
+  ASSERT_EQ(points.size(), 3 * fine.vertex_count());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(points[i], fine.positions[i / 3][static_cast<int>(i % 3)], 1e-6) << i;
+    EXPECT_NEAR(velocities[i], (points[i] - before[i]) * run->frame_rate(), 1e-3) << i;
+  }
+}
+
+TEST_F(Export, ACarriedMeshTakesThePlaceOfTheSurface) {
+  const Mesh& skin = run->mesh(0, SurfaceKind::skin);
+  write_mesh(scratch / "fine.obj", skin);
+  ExportOptions options;
+  options.carry = scratch / "fine.obj";
+  const ExportReport report = export_run(*run, scratch / "a.obj", options);
+  EXPECT_EQ(report.frames_crossing, 0);
+  const Mesh carried = read_mesh(scratch / "a.0003.obj").mesh;
+  const auto points = run->points(0, SurfaceKind::skin, 3);
+  ASSERT_EQ(carried.vertex_count(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_NEAR((carried.positions[i].cast<float>() - points[i]).norm(), 0, 1e-5) << i;
+  options = {};
+  options.thickness = 0.01;
+  export_run(*run, scratch / "thick.obj", options);
+  EXPECT_GT(read_mesh(scratch / "thick.0000.obj").mesh.face_count(), 2 * skin.face_count() - 1);
+}
+
 TEST_F(Export, RefusesUnsupportedFormats) {
   const auto kind_of = [&](const fs::path& file, const ExportOptions& options) {
     try {
@@ -278,6 +320,14 @@ TEST_F(Export, RefusesUnsupportedFormats) {
   EXPECT_EQ(kind_of(scratch / "a.abc", {}), ErrorKind::usage);
   EXPECT_EQ(kind_of(scratch / "a", {}), ErrorKind::usage);
   EXPECT_EQ(kind_of(scratch / "a.pc2", {"sail", SurfaceKind::skin}), ErrorKind::usage);
+  ExportOptions odd;
+  odd.subdivide = 1;
+  EXPECT_EQ(kind_of(scratch / "a.vtu", odd), ErrorKind::usage);
+  odd.subdivide = 9;
+  EXPECT_EQ(kind_of(scratch / "a.obj", odd), ErrorKind::usage);
+  odd = {};
+  odd.carry = scratch / "none.obj";
+  EXPECT_EQ(kind_of(scratch / "a.obj", odd), ErrorKind::file);
   for (const char* suffix : {"pc2", "mdd", "obj", "ply", "usda", "glb", "gltf", "vtu"})
     EXPECT_EQ(kind_of(scratch / (std::string("no/such/place.") + suffix), {}), ErrorKind::file) << suffix;
 }

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
-#include "muslin/cache/export.hpp"
+#include "muslin/cache/exported_surface.hpp"
 
 namespace muslin {
 
@@ -12,11 +13,11 @@ std::filesystem::path numbered(const std::filesystem::path& file, int frame);
 
 /// Writes glTF 2.0: .glb, or .gltf with its buffer in a .bin beside it. The mesh is that of frame 0; morph
 /// target n − 1 is frame n, and weights interpolate linearly between frames.
-void export_gltf(const RunReader& run, const std::filesystem::path& file, int body, SurfaceKind surface,
+void export_gltf(const RunReader& run, const std::filesystem::path& file, ExportedSurface& surface,
                  const Progress& progress);
 
 /// Writes USD as text: metres, y up, one time code per frame.
-void export_usd(const RunReader& run, const std::filesystem::path& file, const ExportOptions& options,
+void export_usd(const RunReader& run, const std::filesystem::path& file, std::span<ExportedSurface> surfaces,
                 const Progress& progress);
 
 /// Writes VTK unstructured grids, one per frame, and a .pvd with their times.

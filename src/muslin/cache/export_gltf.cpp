@@ -149,12 +149,12 @@ void write_gltf(const fs::path& file, Document& document) {
 
 }  // namespace
 
-void export_gltf(const RunReader& run, const fs::path& file, int body, SurfaceKind surface,
+void export_gltf(const RunReader& run, const fs::path& file, ExportedSurface& surface,
                  const Progress& progress) {
-  const SplitMesh mesh = split(run.mesh(body, surface));
-  const std::vector<Vec3f> start = run.points(body, surface, 0);
+  const SplitMesh mesh = split(surface.mesh());
+  const std::vector<Vec3f> start = surface.points(0);
   const int frames = run.frame_count();
-  const std::string& name = run.bodies()[static_cast<std::size_t>(body)];
+  const std::string& name = surface.name();
   Document document;
 
   int view = document.open_view(index_buffer, 0);
@@ -173,7 +173,7 @@ void export_gltf(const RunReader& run, const fs::path& file, int body, SurfaceKi
   if (frames > 1) view = document.open_view(vertex_buffer, 12);
   for (int frame = 1; frame < frames; ++frame) {
     progress.at(static_cast<double>(frame) / frames, "export");
-    const std::vector<Vec3f> points = run.points(body, surface, frame);
+    const std::vector<Vec3f> points = surface.points(frame);
     numbers.clear();
     for (int v : mesh.vertices) {
       const Vec3f d = points[static_cast<std::size_t>(v)] - start[static_cast<std::size_t>(v)];

@@ -91,16 +91,9 @@ void append_samples(WholeFile& out, const std::string& attribute, int frames, co
 
 }  // namespace
 
-void export_usd(const RunReader& run, const fs::path& file, const ExportOptions& options,
+void export_usd(const RunReader& run, const fs::path& file, std::span<ExportedSurface> surfaces,
                 const Progress& progress) {
-  std::vector<int> bodies;
-  if (options.body.empty()) {
-    for (std::size_t b = 0; b < run.bodies().size(); ++b) bodies.push_back(static_cast<int>(b));
-  } else {
-    bodies.push_back(run.find_body(options.body));
-  }
   const int frames = run.frame_count();
-  const SurfaceKind surface = options.surface;
   WholeFile out(file);
   out.append(
       fmt::format("#usda 1.0\n(\n    defaultPrim = \"run\"\n    doc = \"{}\"\n    endTimeCode = {}\n"
@@ -110,16 +103,15 @@ void export_usd(const RunReader& run, const fs::path& file, const ExportOptions&
   out.append("def Xform \"run\" (\n    kind = \"component\"\n)\n{\n");
   std::set<std::string> taken;
   double done = 0;
-  for (int body : bodies) {
-    const Mesh& mesh = run.mesh(body, surface);
-    out.append(fmt::format("    def Mesh \"{}\"\n    {{\n",
-                           identifier(run.bodies()[static_cast<std::size_t>(body)], taken)));
+  for (ExportedSurface& surface : surfaces) {
+    const Mesh& mesh = surface.mesh();
+    out.append(fmt::format("    def Mesh \"{}\"\n    {{\n", identifier(surface.name(), taken)));
     append_topology(out, mesh);
     std::vector<Vec3f> extents;
     append_samples(out, "point3f[] points", frames, [&](int frame) {
-      progress.at(done / (2.0 * frames * static_cast<double>(bodies.size())), "export");
+      progress.at(done / (2.0 * frames * static_cast<double>(surfaces.size())), "export");
       ++done;
-      const std::vector<Vec3f> points = run.points(body, surface, frame);
+      const std::vector<Vec3f> points = surface.points(frame);
       Eigen::AlignedBox3f box;
       for (const Vec3f& p : points) box.extend(p);
       extents.push_back(box.min());
@@ -127,9 +119,9 @@ void export_usd(const RunReader& run, const fs::path& file, const ExportOptions&
       return vectors(points);
     });
     append_samples(out, "vector3f[] velocities", frames, [&](int frame) {
-      progress.at(done / (2.0 * frames * static_cast<double>(bodies.size())), "export");
+      progress.at(done / (2.0 * frames * static_cast<double>(surfaces.size())), "export");
       ++done;
-      return vectors(run.velocities(body, surface, frame));
+      return vectors(surface.velocities(frame));
     });
     append_samples(out, "float3[] extent", frames, [&](int frame) {
       const auto first = extents.begin() + 2 * frame;

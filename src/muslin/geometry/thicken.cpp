@@ -37,6 +37,43 @@ double inner_angle(const Mesh& mesh, std::span<const int> face, std::size_t i, c
   return angle < 0 ? angle + 2 * EIGEN_PI : angle;
 }
 
+/// Returns the texture coordinates of the corners of a thickened mesh, whose faces are the two sides of each
+/// face of the mesh and then the walls.
+std::vector<int> uvs_of_solid(const Mesh& mesh, const Patches& patches, std::span<const EdgeUse> rim) {
+  std::vector<int> result;
+  if (mesh.corner_uvs.empty()) return result;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    std::vector<int> face(mesh.corner_uvs.begin() + mesh.face_offsets[f],
+                          mesh.corner_uvs.begin() + mesh.face_offsets[f + 1]);
+    if (patches.turned[f] != 0) std::reverse(face.begin(), face.end());
+    result.insert(result.end(), face.begin(), face.end());
+    result.insert(result.end(), face.rbegin(), face.rend());
+  }
+  for (const EdgeUse& use : rim) {
+    int from = mesh.corner_uvs[static_cast<std::size_t>(use.corner)];
+    int to = mesh.corner_uvs[static_cast<std::size_t>(mesh.next_corner(use.face, use.corner))];
+    if (patches.turned[static_cast<std::size_t>(use.face)] != 0) std::swap(from, to);
+    result.insert(result.end(), {to, from, from, to});
+  }
+  return result;
+}
+
+/// `upper` is the upper copy of each corner's vertex.
+MeshGroup group_of_solid(const Mesh& mesh, const MeshGroup& group, const std::vector<int>& upper,
+                         std::span<const EdgeUse> rim) {
+  MeshGroup result{group.name, {}, {}};
+  for (const int f : group.faces) result.faces.insert(result.faces.end(), {2 * f, 2 * f + 1});
+  for (std::size_t r = 0; r < rim.size(); ++r)
+    if (std::binary_search(group.faces.begin(), group.faces.end(), rim[r].face))
+      result.faces.push_back(static_cast<int>(2 * mesh.face_count() + r));
+  for (std::size_t c = 0; c < upper.size(); ++c)
+    if (std::binary_search(group.vertices.begin(), group.vertices.end(), mesh.face_vertices[c]))
+      result.vertices.insert(result.vertices.end(), {upper[c], upper[c] + 1});
+  std::sort(result.vertices.begin(), result.vertices.end());
+  result.vertices.erase(std::unique(result.vertices.begin(), result.vertices.end()), result.vertices.end());
+  return result;
+}
+
 }  // namespace
 
 bool is_closed(const Mesh& mesh) {
@@ -47,7 +84,7 @@ bool is_closed(const Mesh& mesh) {
 
 Mesh thicken(const Mesh& mesh, double thickness) {
   if (!(thickness > 0) || !std::isfinite(thickness))
-    throw Error(ErrorKind::usage, "a sheet has the thickness" + std::to_string(thickness) + " m",
+    throw Error(ErrorKind::usage, "a sheet has the thickness " + std::to_string(thickness) + " m",
                 "give a positive thickness in metres");
   const std::size_t face_count = mesh.face_count();
   const std::vector<EdgeUse> uses = edge_uses(mesh);
@@ -132,6 +169,9 @@ Mesh thicken(const Mesh& mesh, double thickness) {
     if (turned(use.face)) std::swap(from, to);
     solid.add_face(std::array{to, from, from + 1, to + 1});
   }
+  solid.uvs = mesh.uvs;
+  solid.corner_uvs = uvs_of_solid(mesh, patches, rim);
+  for (const MeshGroup& group : mesh.groups) solid.groups.push_back(group_of_solid(mesh, group, upper, rim));
   return solid;
 }
 

@@ -16,7 +16,8 @@ bool is_closed(const Mesh& mesh);
 /// thickness over the cosine of its angle to the faces, so that faces move by half the thickness where the
 /// sheet is creased too. The move is limited to the whole thickness, which is reached at creases sharper than
 /// 60°. Sheets that meet in an edge of three or more faces are thickened separately, with a wall along that
-/// edge; so are the faces of a one-sided sheet (Möbius). UVs and groups are dropped. Errors: usage, if the
+/// edge; so are the faces of a one-sided sheet (Möbius). Either side has the texture coordinates of the sheet
+/// and a wall those of its edge; groups hold both sides and the walls of their faces. Errors: usage, if the
 /// thickness is not positive and finite.
 Mesh thicken(const Mesh& mesh, double thickness);
 
