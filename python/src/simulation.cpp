@@ -92,10 +92,21 @@ int next_frame(Self& self) {
   return self.simulation().frame();
 }
 
+void bind_forces(nb::module_& m) {
+  nb::class_<PinForce>(m, "PinForce", "The force that a pin exerts on its body.")
+      .def_prop_ro(
+          "sum", [](const PinForce& force) { return to_array(force.sum); },
+          "On all of its vertices, (3,) [N].")
+      .def_ro("mean", &PinForce::mean, "Magnitude on a vertex, mean over its vertices [N].")
+      .def_ro("largest", &PinForce::largest, "Magnitude on a vertex, the largest [N].")
+      .def_ro("most", &PinForce::most, "Magnitude of `sum`, the largest of all steps so far [N].");
+}
+
 }  // namespace
 
 void bind_simulation(nb::module_& m) {
   bind_diagnostics(m);
+  bind_forces(m);
   nb::class_<Self>(
       m, "Simulation", nb::type_slots(slots),
       "A model and its state, advanced frame by frame:\n\n"
@@ -206,6 +217,10 @@ void bind_simulation(nb::module_& m) {
           "probe_velocities",
           [](const Self& self) { return at_probes(self, self.simulation().state().velocities); },
           "The velocity of each probe, (3,) [m/s].")
+      .def(
+          "pin_force",
+          [](const Self& self, const std::string& pin) { return self.simulation().pin_force(pin); }, "pin"_a,
+          "The force of a pin in the last step.")
       .def(
           "costs", [](const Self& self) { return costs_of(self.simulation().costs()); },
           "Where the time of contact went since the simulation was made: seconds of \"search\", \"limit\", "

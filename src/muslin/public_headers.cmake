@@ -44,6 +44,7 @@ set(MUSLIN_PUBLIC_HEADERS
     potential/history.hpp
     potential/potential.hpp
     potential/state.hpp
+    potential/state_arrays.hpp
     potential/step_guard.hpp
     scene/model.hpp
     scene/pressure.hpp
@@ -52,6 +53,7 @@ set(MUSLIN_PUBLIC_HEADERS
     scene/wind_force_settings.hpp
     schema/own_settings.hpp
     simulation/diagnostics.hpp
+    simulation/pin_force.hpp
     simulation/simulated_body.hpp
     simulation/simulation.hpp
     solver/solver.hpp

@@ -96,9 +96,9 @@ bool is_tangled_run(const fs::path& directory) {
 namespace {
 
 const std::vector<std::string>& own_names() {
-  static const std::vector<std::string> names = {"scene.toml",  "diagnostics.csv", "probes.csv",
-                                                 "stretch.csv", "stats.json",      "report.html",
-                                                 "report.json", "selections.json", "run.json"};
+  static const std::vector<std::string> names = {
+      "scene.toml", "diagnostics.csv", "probes.csv",  "pins.csv",        "attachments.csv", "stretch.csv",
+      "stats.json", "report.html",     "report.json", "selections.json", "run.json"};
   return names;
 }
 

@@ -151,6 +151,7 @@ struct RunWriter::Impl {
   std::vector<BodyCaches> caches;
   OutputFile diagnostics, probes;
   std::optional<OutputFile> stretches;  ///< only if a shell has, or in an earlier session had, a limit
+  std::optional<OutputFile> pins;       ///< likewise, if the scene has pins
   bool resumed = false;
   std::vector<std::string> changes;
   Json sessions = Json::array();
@@ -251,12 +252,14 @@ void RunWriter::Impl::open_files(int frames) {
   };
   diagnostics = table("diagnostics.csv", diagnostics_header, true);
   probes = table("probes.csv", probes_header, true);
-  // A limit may be new on resume.
-  std::error_code code;
-  const bool has_stretches = fs::exists(directory / "stretch.csv", code);
-  stretches.reset();
-  if (has_stretches || has_stretch_limit(model()))
-    stretches = table("stretch.csv", stretch_header, has_stretches);
+  // Limits and pins may be new on resume.
+  const auto table_if = [&](bool wanted, const char* name, std::string_view header) {
+    std::error_code code;
+    const bool is_there = fs::exists(directory / name, code);
+    return is_there || wanted ? std::optional(table(name, header, is_there)) : std::nullopt;
+  };
+  stretches = table_if(has_stretch_limit(model()), "stretch.csv", stretch_header);
+  pins = table_if(!model().pins.empty(), "pins.csv", pins_header);
 }
 
 /// A table that an earlier version began gets the columns of this one, as it can have only one kind of rows.
@@ -343,6 +346,7 @@ void RunWriter::Impl::append_rows() {
   diagnostics.append(diagnostics_row(simulation.diagnostics()));
   probes.append(probe_rows(simulation));
   quality.add(simulation.diagnostics());
+  if (pins) pins->append(pin_rows(simulation));
   if (!stretches) return;
   for (const LimitedStretch& row :
        limited_stretches(model(), simulation.state().positions, simulation.frame())) {
@@ -359,6 +363,7 @@ void RunWriter::Impl::sync() {
   diagnostics.sync();
   probes.sync();
   if (stretches) stretches->sync();
+  if (pins) pins->sync();
   last_sync = Clock::now();
 }
 
@@ -432,6 +437,9 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
     run["overstretched"].push_back(
         {{"body", shell.body}, {"frames", shell.frames}, {"stretch", shell.stretch}, {"limit", shell.limit}});
   }
+  run["pins"] = Json::array();
+  for (const Pin& pin : model.pins)
+    run["pins"].push_back({{"name", pin.name}, {"largest_force", simulation.pin_force(pin.name).most}});
   Json all = sessions;
   all.push_back({{"from_frame", first_frame},
                  {"to_frame", simulation.frame()},

@@ -36,6 +36,7 @@ const std::string_view diagnostics_header =
     "newton_iterations,linear_iterations,residual,max_stretch,min_distance,wall_ms,steps,converged_steps,"
     "error,unbalanced,crossings,held_back,penetration\n";
 const std::string_view probes_header = "frame,time,name,x,y,z,vx,vy,vz\n";
+const std::string_view pins_header = "frame,time,name,x,y,z,mean,largest\n";
 const std::string_view stretch_header = "frame,stretch,limit,body\n";
 
 std::string diagnostics_row(const Diagnostics& row) {
@@ -59,6 +60,17 @@ std::string probe_rows(const Simulation& simulation) {
     probe.point.apply(model.of(body, state.velocities), Vectors(&v, 1));
     text += fmt::format("{},{},{},{},{},{},{},{},{}\n", row.frame, row.time, quoted(probe.name), x.x(), x.y(),
                         x.z(), v.x(), v.y(), v.z());
+  }
+  return text;
+}
+
+std::string pin_rows(const Simulation& simulation) {
+  const Diagnostics& row = simulation.diagnostics();
+  std::string text;
+  for (const Pin& pin : simulation.model().pins) {
+    const PinForce force = simulation.pin_force(pin.name);
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", row.frame, row.time, quoted(pin.name), force.sum.x(),
+                        force.sum.y(), force.sum.z(), force.mean, force.largest);
   }
   return text;
 }

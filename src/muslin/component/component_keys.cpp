@@ -44,7 +44,10 @@ const schema::Table& motion_keyframe_table() {
            })
            .unit("degrees")
            .otherwise("`[0, 0, 0]`")
-           .means("rotation about `pivot`: about the x axis, then y, then z")});
+           .means("rotation about `pivot`: about the x axis, then y, then z"),
+       scale_of(&Motion::Key::scale)
+           .shown_if<Motion::Key>([](const Motion::Key& key) { return key.scale != Vec3::Ones(); })
+           .means("of pins: scale about `pivot`, a number or one per axis; applied first")});
   return table;
 }
 

@@ -13,6 +13,7 @@ enum class EnergyRole {
   elastic,      ///< stored in the material
   potential,    ///< stored in a fixed field (gravity)
   work,         ///< done on the bodies from outside (point forces, wind)
+  support,      ///< likewise, by what holds a body; its force answers to others and starts no motion
   dissipation,  ///< lost (damping)
 };
 

@@ -1,4 +1,4 @@
-// Holds finds the vertices that pins hold during a step, and their targets.
+// Holds finds the vertices that hard pins hold during a step, and their targets.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +28,9 @@ struct Holds {
   /// fixed[v] = 1 where v is held at the end of the step, and targets[v] is then its position; elsewhere
   /// fixed[v] = 0 and targets[v] is positions[v].
   ///
-  /// A pin that is active at `time_end` holds; one that becomes active records its vertices from `positions`
-  /// and discards them when it ends. Where pins overlap, the later one in `pins` has priority. A pin's first
-  /// moment is max(from, 0), as runs start at time 0. `from` and `until` within 1e-6 of a step of `time_end`
-  /// count as reached: a clock that adds up steps is not exact.
+  /// A hard pin that is active at `time_end` holds (PinTargets::acts); one that becomes active records its
+  /// vertices from `positions` and discards them when it ends. Where pins overlap, the later one in `pins`
+  /// has priority. A pin's first moment is max(from, 0), as runs start at time 0. Soft pins hold nothing.
   void step(std::span<const Pin> pins, double time_begin, double time_end, ConstVectors positions,
             std::span<std::uint8_t> fixed, Vectors targets);
 

@@ -1,4 +1,4 @@
-// A Pin holds vertices in place or moves them along keyframes for some time.
+// A Pin holds vertices in place or moves them along keyframes for some time, exactly or by springs.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +13,29 @@
 
 namespace muslin {
 
-/// A rigid motion given by keyframes: linear in translation, spherical-linear in rotation between them,
+/// A motion given by keyframes: linear in translation and scale, spherical-linear in rotation between them,
 /// constant before the first and after the last. No keyframes: the identity.
 struct MUSLIN_API Motion {
   struct Key {
     double time = 0;                ///< [s]
     Vec3 translate = Vec3::Zero();  ///< [m]
     Eigen::Quaterniond rotate = Eigen::Quaterniond::Identity();
+    Vec3 scale = Vec3::Ones();  ///< along the axes before the rotation, > 0; of pins only
   };
   std::vector<Key> keys;      ///< times ascend strictly
-  Vec3 pivot = Vec3::Zero();  ///< rotations turn about this point [m]
+  Vec3 pivot = Vec3::Zero();  ///< rotation and scale leave this point where it is [m]
 
+  bool scales() const;
+  /// Returns the motion without its scale.
   Eigen::Isometry3d at(double time) const;
+  Vec3 scale_at(double time) const;
+  /// Returns the map from places at time `begin` to places at `time`, scale included.
+  Eigen::Affine3d between(double begin, double time) const;
 };
 
-/// Holds `vertices` from `from` until `until`: vertex v is at motion(t)·motion(from)⁻¹ applied to its
-/// position when the pin began. With a sequence, v instead keeps the offset that it had at that time from the
-/// point it follows.
+/// Holds `vertices` from `from` until `until`: the target of vertex v is motion(t)·motion(from)⁻¹ applied to
+/// its position when the pin began. With a sequence, v instead keeps the offset that it had at that time from
+/// the point it follows. Vertices of a hard pin are at their targets, those of a soft one are pulled there.
 struct Pin {
   std::string name;
   std::vector<int> vertices;                               ///< global vertex indices, ascending
@@ -38,7 +44,10 @@ struct Pin {
   Motion motion;
   std::shared_ptr<const PointSequence> sequence = nullptr;  ///< null: `motion` applies
   std::vector<int> points = {};  ///< #vertices: the point of the sequence that each follows
+  std::vector<double> stiffness = {};  ///< #vertices, of the springs of a soft pin [N/m]; empty: a hard pin
+  std::vector<double> damping = {};    ///< #vertices, against the motion of the target [N·s/m]; or empty
 
+  bool is_soft() const { return !stiffness.empty(); }
   bool active(double time) const { return time >= from && time < until; }
 };
 

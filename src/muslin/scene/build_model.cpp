@@ -79,7 +79,7 @@ std::vector<std::uint8_t> always_held(const Model& model, const Component& compo
   const auto count = static_cast<std::size_t>(component.vertex_count);
   std::vector<std::uint8_t> held(count, 0);
   for (const Pin& pin : model.pins) {
-    if (pin.from > 0 || std::isfinite(pin.until)) continue;
+    if (pin.is_soft() || pin.from > 0 || std::isfinite(pin.until)) continue;
     for (const int v : pin.vertices) {
       const int local = v - component.first_vertex;
       if (local >= 0 && local < component.vertex_count) held[static_cast<std::size_t>(local)] = 1;

@@ -1,9 +1,11 @@
 #include "muslin/scene/build_pins.hpp"
 
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "muslin/constraint/soft_pin.hpp"
 #include "muslin/scene/pin_sequence.hpp"
 
 namespace muslin {
@@ -20,6 +22,28 @@ Vec3 centre_of(const Model& model, const std::vector<int>& vertices) {
   return sum / static_cast<double>(vertices.size());
 }
 
+/// The product of rate and time after which (1 + rate·time) exp(−rate·time), the share of the way that is
+/// left with critical damping, is 1 %.
+constexpr double settled = 6.638;
+
+/// Shares the stiffness and damping of a soft pin among its vertices, by their masses: the pin pulls as hard
+/// at any resolution of the mesh.
+void soften(const Model& model, const PinSettings& settings, const Component& body, Pin& pin) {
+  double stiffness = settings.stiffness.value_or(0), damping = settings.damping;
+  if (settings.time) {
+    const double rate = settled / *settings.time;
+    stiffness = body.statistics.mass * rate * rate;
+    damping = 2 * body.statistics.mass * rate;
+  }
+  double mass = 0;
+  for (const int v : pin.vertices) mass += model.masses[static_cast<std::size_t>(v)];
+  for (const int v : pin.vertices) {
+    const double share = model.masses[static_cast<std::size_t>(v)] / mass;
+    pin.stiffness.push_back(stiffness * share);
+    pin.damping.push_back(damping * share);
+  }
+}
+
 }  // namespace
 
 void build_pins(Model& model) {
@@ -33,6 +57,14 @@ void build_pins(Model& model) {
     pin.motion = settings.motion;
     pin.motion.pivot = settings.pivot.value_or(centre_of(model, pin.vertices));
     if (!settings.sequence.empty()) follow_sequence(model.scene, settings, body, pin);
+    if (settings.is_soft()) {
+      if (model.scene.solver.integrator == Integrator::symplectic_euler)
+        throw Error(ErrorKind::input, settings.place,
+                    fmt::format("pin {}: symplectic_euler does not support soft pins", pin.name),
+                    "choose an implicit integrator");
+      soften(model, settings, body, pin);
+      model.loads.push_back({pin.name, EnergyRole::support, std::make_shared<SoftPin>(pin)});
+    }
     model.pins.push_back(std::move(pin));
   }
 }

@@ -23,6 +23,8 @@ const auto& find_by_name(const List& all, std::string_view name, const std::stri
 
 const Component& Model::body(std::string_view name) const { return find_by_name(bodies, name, "body"); }
 
+const Pin& Model::pin(std::string_view name) const { return find_by_name(pins, name, "pin"); }
+
 const Probe& Model::probe(std::string_view name) const { return find_by_name(probes, name, "probe"); }
 
 const Component& Model::body_of(std::size_t vertex) const {

@@ -41,8 +41,9 @@ struct MUSLIN_API Model {
   std::vector<std::string> warnings;            ///< for the user, before a run
 
   std::size_t vertex_count() const { return rest_positions.size(); }
-  /// Return the component or probe of that name. Errors: usage, with the nearest name.
+  /// Return the component, pin or probe of that name. Errors: usage, with the nearest name.
   const Component& body(std::string_view name) const;
+  const Pin& pin(std::string_view name) const;
   const Probe& probe(std::string_view name) const;
   /// Returns the component of a vertex of the model. Errors: usage, if there is no such vertex.
   const Component& body_of(std::size_t vertex) const;

@@ -11,6 +11,28 @@ std::string both_move(const char* key) {
   return fmt::format("`{}` and `sequence` both say how the pin moves", key);
 }
 
+std::vector<schema::Key> softness_keys() {
+  return {schema::number("stiffness", &PinSettings::stiffness)
+              .unit("N/m")
+              .range({0, 1e9, true})
+              .otherwise("the pin holds exactly")
+              .means("of the whole pin, which is then soft: springs pull its vertices to their targets; each "
+                     "has a share by its mass"),
+          schema::number("time", &PinSettings::time)
+              .unit("s")
+              .range({1e-3, 1e6, false})
+              .excludes("stiffness", "`time` and `stiffness` both say how hard the pin pulls")
+              .excludes("damping", "`time` and `damping` both say how the pin is damped")
+              .means("in place of `stiffness`: time in which a critically damped soft pin brings its body to "
+                     "the target"),
+          schema::number("damping", &PinSettings::damping)
+              .unit("N·s/m")
+              .range({0, 1e9, false})
+              .shown_if<PinSettings>([](const PinSettings& pin) { return pin.stiffness.has_value(); })
+              .needs("stiffness", "only a soft pin is damped: give its `stiffness`")
+              .means("of the whole pin, against motion relative to the target")};
+}
+
 schema::Table declare_pin() {
   schema::Table table = schema::table_of<PinSettings>(
       "[[pin]]",
@@ -25,11 +47,12 @@ schema::Table declare_pin() {
                                       "start time; the vertices are held at their positions at that time",
                                       "release time, after `from`", "never"))
     table.keys.push_back(key);
+  for (schema::Key& key : softness_keys()) table.keys.push_back(std::move(key));
   table.keys.push_back(schema::vector("pivot", &PinSettings::pivot)
                            .unit("m")
                            .otherwise("centre of its vertices at rest")
                            .excludes("sequence", both_move("pivot"))
-                           .means("point about which `rotate` turns"));
+                           .means("point about which `rotate` turns and `scale` scales"));
   table.keys.push_back(
       schema::path("sequence", &PinSettings::sequence, &PinSettings::sequence_place)
           .means("motion, in place of `keyframes`: a file with the position of every vertex of the body's "
@@ -62,6 +85,8 @@ void finish_pin(const TomlTable& table, std::size_t index, PinSettings& pin, con
     throw table.error("where", "a rigid body is held as a whole", "take `where` out");
   } else if (table.has("sequence")) {
     throw table.error("sequence", "a rigid body does not follow a sequence", "move it by `keyframes`");
+  } else if (pin.motion.scales()) {
+    throw table.error("keyframes", "a rigid body is not scaled", "take `scale` out");
   }
   require_new_name(table, scene.pins, "pin", "pin", pin.name);
 }

@@ -48,11 +48,16 @@ struct PinSettings {
   std::string name, body;
   Selection where;  ///< unused for a rigid body, which is held as a whole
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
+  std::optional<double> stiffness;  ///< of a soft pin, of all its springs together [N/m]
+  std::optional<double> time;       ///< in place of the stiffness: time in which it pulls its body there [s]
+  double damping = 0;               ///< of all its dashpots together [N·s/m]
   Motion motion;
   std::optional<Vec3> pivot;  ///< of the motion [m]; default: the centre of the held vertices at rest
   std::string sequence;       ///< in place of the motion: path of a file of moving points; empty: none
   Place sequence_place;
   Place place;
+
+  bool is_soft() const { return stiffness || time; }
 };
 
 struct ForceSettings {

@@ -69,9 +69,14 @@ class Advance {
     solved.after = &state_.motion;
     solved.masses = model_.masses;
     solved.fixed = scratch_.fixed;
-    state_.energy.enter(terms_, solved, loads, guard_ ? &guard_->last_potential() : nullptr);
+    solved.wants_reactions = !model_.pins.empty();
+    const std::vector<Vec3> reactions =
+        state_.energy.enter(terms_, solved, loads, guard_ ? &guard_->last_potential() : nullptr);
     for (std::size_t i = 0; i < loads.size(); ++i)
       if (loads[i]) terms_.loads[i].load->end_step(*loads[i], state_.motion.positions, state_.motion.history);
+    if (!model_.pins.empty())
+      update_pin_forces(model_.pins, context.time_begin, context.time_end, reactions, state_.motion.history,
+                        state_.pin_forces);
     return report;
   }
 

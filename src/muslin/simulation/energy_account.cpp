@@ -56,7 +56,7 @@ EnergyFlow energy_flow(const SolvedStep& step) {
       for (std::size_t v = begin; v < end; ++v) total[v] += g[v];
     });
     const double spent = dot(g, displacement);
-    if (act.role == EnergyRole::work) {
+    if (act.role == EnergyRole::work || act.role == EnergyRole::support) {
       flow.work -= spent;
     } else {
       flow.dissipated += spent - (is_stored(act.role) ? stored - act.before : 0);
@@ -72,6 +72,7 @@ EnergyFlow energy_flow(const SolvedStep& step) {
       return {loss + other.loss, reaction + other.reaction, residual + other.residual};
     }
   };
+  if (step.wants_reactions) flow.reactions.assign(count, Vec3::Zero());
   const Sums sums = parallel_sum(count, grain, Sums{}, [&](std::size_t begin, std::size_t end) {
     Sums sum;
     for (std::size_t v = begin; v < end; ++v) {
@@ -87,6 +88,7 @@ EnergyFlow energy_flow(const SolvedStep& step) {
       sum.loss += euler ? 0.5 * step.masses[v] * (v1 - v0).squaredNorm()
                         : inertia.dot(displacement[v]) - 0.5 * step.masses[v] * (v1 - v0).dot(v1 + v0);
       (step.fixed[v] ? sum.reaction : sum.residual) += (inertia + total[v]).dot(displacement[v]);
+      if (step.wants_reactions && step.fixed[v]) flow.reactions[v] = inertia + total[v];
     }
     return sum;
   });

@@ -44,6 +44,7 @@ struct SolvedStep {
   std::span<const double> masses;         ///< #V [kg]
   std::span<const std::uint8_t> fixed;    ///< #V, 1 where held
   std::span<const ActingPotential> acts;  ///< the potentials that acted
+  bool wants_reactions = false;
 };
 
 /// Energies [J] that entered or left the system during a step.
@@ -52,6 +53,8 @@ struct EnergyFlow {
   double dissipated = 0;       ///< by damping, internal friction and the integrator; < 0 if it adds energy
   double unbalanced = 0;       ///< work of the forces at free vertices that the solver left out of balance
   std::vector<double> stored;  ///< by each of `acts` at the end; 0 for roles that store none
+  /// #V, the forces that hold the held vertices [N]; empty unless the step wants them.
+  std::vector<Vec3> reactions;
 };
 
 /// Returns the flow of one step.

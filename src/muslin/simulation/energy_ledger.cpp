@@ -37,8 +37,9 @@ void EnergyLedger::measure(const Terms& acting, const StepContext& context, Cons
   }
 }
 
-void EnergyLedger::enter(const Terms& acting, SolvedStep step,
-                         std::span<const std::unique_ptr<Potential>> loads, const ContactPotential* contact) {
+std::vector<Vec3> EnergyLedger::enter(const Terms& acting, SolvedStep step,
+                                      std::span<const std::unique_ptr<Potential>> loads,
+                                      const ContactPotential* contact) {
   const std::vector<Vec3>&before = step.before->positions, &after = step.after->positions;
   std::vector<ActingPotential> acts;
   std::vector<std::size_t> slots;  // of the acts
@@ -65,12 +66,13 @@ void EnergyLedger::enter(const Terms& acting, SolvedStep step,
   }
   if (contact) acts.push_back({EnergyRole::elastic, contact, contact_energy, contact->parts(after).normal});
   step.acts = acts;
-  const EnergyFlow flow = energy_flow(step);
+  EnergyFlow flow = energy_flow(step);
   for (std::size_t k = 0; k < slots.size(); ++k) stored[slots[k]] = flow.stored[k];
   if (contact) contact_energy = flow.stored.back();
   work += flow.work;
   dissipated += flow.dissipated;
   unbalanced += flow.unbalanced;
+  return std::move(flow.reactions);
 }
 
 void EnergyLedger::go_on_with(const Terms& acting, ConstVectors positions) {

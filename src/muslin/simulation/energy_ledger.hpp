@@ -58,9 +58,9 @@ struct EnergyLedger {
   void measure(const Terms& acting, const StepContext& context, ConstVectors positions);
 
   /// Adds a step; `step.acts` is filled in here. `loads`: the potentials of the loads in the step. `contact`:
-  /// the potential of contact, null if nothing can touch.
-  void enter(const Terms& acting, SolvedStep step, std::span<const std::unique_ptr<Potential>> loads,
-             const ContactPotential* contact);
+  /// the potential of contact, null if nothing can touch. Returns EnergyFlow::reactions.
+  std::vector<Vec3> enter(const Terms& acting, SolvedStep step,
+                          std::span<const std::unique_ptr<Potential>> loads, const ContactPotential* contact);
 
   /// Continues with other terms, from `positions`: the energy of terms with the same name is kept; the change
   /// of energy counts as work.

@@ -44,14 +44,17 @@ RunState from_checkpoint(std::span<const std::uint8_t> bytes, std::size_t vertic
 void go_on_with(std::span<const Pin> pins, RunState& state) {
   const std::vector<PinKey> earlier_pins = std::exchange(state.pins, pin_keys(pins));
   const Holds earlier = std::exchange(state.holds, {});
+  const std::vector<PinForce> earlier_forces = std::exchange(state.pin_forces, {});
   if (earlier.holding.size() != earlier_pins.size()) return;
   for (const PinKey& key : state.pins) {
     std::vector<Vec3> anchors(key.vertices, Vec3::Zero());
     std::uint8_t holding = 0;
+    PinForce force;
     std::size_t first = 0;
     for (std::size_t p = 0; p < earlier_pins.size(); ++p) {
       if (earlier_pins[p] == key && first + key.vertices <= earlier.anchors.size()) {
         holding = earlier.holding[p];
+        if (p < earlier_forces.size()) force = earlier_forces[p];
         std::copy_n(earlier.anchors.begin() + static_cast<std::ptrdiff_t>(first), key.vertices,
                     anchors.begin());
         break;
@@ -59,6 +62,7 @@ void go_on_with(std::span<const Pin> pins, RunState& state) {
       first += earlier_pins[p].vertices;
     }
     state.holds.holding.push_back(holding);
+    state.pin_forces.push_back(force);
     state.holds.anchors.insert(state.holds.anchors.end(), anchors.begin(), anchors.end());
   }
 }

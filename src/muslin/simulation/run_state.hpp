@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "muslin/constraint/holds.hpp"
@@ -15,6 +16,7 @@
 #include "muslin/simulation/checkpoint.hpp"
 #include "muslin/simulation/diagnostics.hpp"
 #include "muslin/simulation/energy_ledger.hpp"
+#include "muslin/simulation/pin_force.hpp"
 #include "muslin/simulation/step_control.hpp"
 
 namespace muslin {
@@ -39,6 +41,7 @@ struct RunState {
   int steps_done = 0;        ///< steps of the current frame
   std::vector<PinKey> pins;  ///< the pins of `holds`
   Holds holds;
+  std::vector<PinForce> pin_forces;  ///< #pins; empty before the first step
   ContactMemory contact;  ///< empty if nothing can touch
   EnergyLedger energy;
   StepControl control;
@@ -52,6 +55,8 @@ struct RunState {
     arrays("steps_done", self.steps_done);
     arrays("holds.pins", self.pins);
     Holds::name_arrays(self.holds, arrays);
+    // Runs without pins do not write it.
+    if (!std::is_const_v<Self> || !self.pin_forces.empty()) arrays("holds.forces", self.pin_forces);
     ContactMemory::name_arrays(self.contact, arrays);
     EnergyLedger::name_arrays(self.energy, arrays);
     StepControl::name_arrays(self.control, arrays);

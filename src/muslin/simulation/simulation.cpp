@@ -217,6 +217,11 @@ Vec3 Simulation::probe(const std::string& name) const {
   return point;
 }
 
+PinForce Simulation::pin_force(const std::string& name) const {
+  const auto p = static_cast<std::size_t>(&model().pin(name) - model().pins.data());
+  return p < impl_->state.pin_forces.size() ? impl_->state.pin_forces[p] : PinForce{};
+}
+
 void Simulation::add_load(LoadTerm load) {
   if (!load.load)
     throw Error(ErrorKind::usage, "the load \"" + load.name + "\" is null", "give one that exists");

@@ -14,6 +14,7 @@
 #include "muslin/potential/state.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/simulation/diagnostics.hpp"
+#include "muslin/simulation/pin_force.hpp"
 #include "muslin/simulation/simulated_body.hpp"
 #include "muslin/solver/solver.hpp"
 
@@ -46,6 +47,8 @@ class MUSLIN_API Simulation {
   SimulatedBody body(const std::string& name);
   /// Returns the position of the probe of that name [m]. Errors: usage, with the nearest name.
   Vec3 probe(const std::string& name) const;
+  /// Returns the force of the pin of that name in the last step. Errors: usage, with the nearest name.
+  PinForce pin_force(const std::string& name) const;
 
   /// Advances to the end of the next frame. A step that fails is halved, up to 8 times; if that fails too,
   /// throws Error(solver) with frame, time, place and remedy, and the state is that of the last good step.

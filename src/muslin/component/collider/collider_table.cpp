@@ -161,6 +161,11 @@ schema::Table declare_collider() {
            .otherwise("grey")
            .means("colour in pictures")});
   schema::choose(table, "shape", &Collider::shape, variants);
+  schema::add_rule<Collider>(table, [](const Collider& collider, const Subject& subject) {
+    if (collider.motion.scales())
+      throw subject.error("keyframes", "a keyframe of a collider has a `scale`",
+                          "colliders keep their size; scale the mesh in a `sequence`");
+  });
   for (Key& key : table.keys) {
     if (key.name == "keyframes")  // a rigid body has none
       key.shown = [](const void* s) { return !static_cast<const Collider*>(s)->is_free(); };

@@ -1,0 +1,38 @@
+#include "muslin/constraint/pin_targets.hpp"
+
+#include <algorithm>
+
+namespace muslin {
+namespace {
+
+Vec3 point_of_sequence(const Pin& pin, double time, std::size_t i) {
+  return pin.sequence->at(time, static_cast<std::size_t>(pin.points[i]));
+}
+
+}  // namespace
+
+PinTargets::PinTargets(const Pin& pin, double time)
+    : pin_(pin),
+      time_(time),
+      moves_(!pin.motion.keys.empty()),
+      motion_(pin.motion.between(std::max(pin.from, 0.0), time)) {}
+
+Vec3 PinTargets::at(std::size_t i, const Vec3& anchor) const {
+  if (pin_.sequence) return anchor + point_of_sequence(pin_, time_, i);
+  return moves_ ? Vec3(motion_ * anchor) : anchor;
+}
+
+Vec3 PinTargets::anchor(std::size_t i, const Vec3& position) const {
+  if (pin_.sequence) return position - point_of_sequence(pin_, time_, i);
+  return moves_ ? Vec3(motion_.inverse() * position) : position;
+}
+
+Vec3 PinTargets::first_anchor(const Pin& pin, double time, std::size_t i, const Vec3& position) {
+  return pin.sequence ? Vec3(position - point_of_sequence(pin, time, i)) : position;
+}
+
+bool PinTargets::acts(const Pin& pin, double time_begin, double time_end) {
+  return pin.active(time_end + 1e-6 * (time_end - time_begin));
+}
+
+}  // namespace muslin

@@ -1,0 +1,36 @@
+// PinTargets computes the places where a pin wants its vertices at one moment.
+//
+// The anchor of a vertex is its position when the pin began; with a sequence, relative to its point there.
+#pragma once
+
+#include <cstddef>
+
+#include "muslin/constraint/pin.hpp"
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+class PinTargets {
+ public:
+  /// `pin` must outlive this.
+  PinTargets(const Pin& pin, double time);
+
+  /// Returns the target of vertex i of the pin [m].
+  Vec3 at(std::size_t i, const Vec3& anchor) const;
+  /// Returns the anchor with which vertex i has its target at `position`.
+  Vec3 anchor(std::size_t i, const Vec3& position) const;
+
+  /// Returns the anchor of vertex i, which is at `position`, of a pin that begins in a step from `time`.
+  static Vec3 first_anchor(const Pin& pin, double time, std::size_t i, const Vec3& position);
+  /// True if the pin acts in a step. `from` and `until` within 1e-6 of a step of `time_end` count as reached:
+  /// a clock that adds up steps is not exact.
+  static bool acts(const Pin& pin, double time_begin, double time_end);
+
+ private:
+  const Pin& pin_;
+  double time_;
+  bool moves_;
+  Eigen::Affine3d motion_;
+};
+
+}  // namespace muslin

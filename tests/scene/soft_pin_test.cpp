@@ -1,0 +1,187 @@
+// Soft pins in runs: forces in closed form, arrival in time, hand-over, the energy account, resume and
+// threads; the report of what pins hold; errors.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/sheet.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "muslin/core/error.hpp"
+#include "muslin/core/parallel.hpp"
+#include "muslin/scene/model.hpp"
+#include "muslin/simulation/simulation.hpp"
+
+namespace muslin {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double g = 9.8;  // of gravity [m/s²]
+
+/// A sheet of 0.2 m by 0.1 m and 2 g in squares, `squares` along its width.
+std::shared_ptr<const Model> sheet(const std::string& pins, const std::string& more = "", int squares = 2,
+                                   const std::vector<std::string>& overrides = {}) {
+  Scene scene = parse_scene(R"([time]
+duration = 4
+[solver]
+effort = 'exact'
+[[body]]
+name = 'cloth'
+mesh = 'sheet'
+model = 'shell'
+contact = false
+compression = 'elastic'
+material = { areal_density = 0.1, membrane_warp = 200, bending_warp = 1e-4, mass_damping = 8 }
+[[force]]
+type = 'gravity'
+)" + pins + more,
+                            "scene.toml", overrides);
+  scene.meshes["sheet"] = std::make_shared<const Mesh>(test::flat_sheet(2 * squares, squares, 0.2, 0.1));
+  return std::make_shared<const Model>(build_model(scene));
+}
+const std::string everywhere = "where = { box = [[-1, -1, -1], [1, 1, 1]] }\n";
+const std::string row = "where = { plane = { point = [0, 0, 0], normal = [1, 0, 0] } }\n";
+constexpr double mass = 0.1 * 0.2 * 0.1;
+
+Simulation after(const std::shared_ptr<const Model>& model, int frames) {
+  Simulation simulation(model);
+  while (simulation.frame() < frames) simulation.advance();
+  return simulation;
+}
+
+Vec3 centre(const Simulation& simulation) {
+  Vec3 sum = Vec3::Zero();
+  double total = 0;
+  for (std::size_t v = 0; v < simulation.state().positions.size(); ++v) {
+    sum += simulation.model().masses[v] * simulation.state().positions[v];
+    total += simulation.model().masses[v];
+  }
+  return sum / total;
+}
+
+std::string message(const std::string& pins, const std::string& more = "") {
+  try {
+    sheet(pins, more);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SoftPinRun, SpringOfStiffnessKGivesWayByTheWeightOverKAtAnyResolution) {
+  for (const int squares : {2, 5}) {
+    const auto model = sheet("[[pin]]\nname = 'hand'\nstiffness = 2\n" + everywhere, "", squares);
+    const Simulation simulation = after(model, 90);
+    EXPECT_NEAR(centre(simulation).y(), -mass * g / 2, 1e-3 * mass * g / 2);
+    EXPECT_NEAR(simulation.pin_force("hand").sum.y(), mass * g, 1e-3 * mass * g);
+    EXPECT_LT(std::abs(simulation.pin_force("hand").sum.x()), 1e-6);
+  }
+}
+
+// With dashpots that resist motion relative to the target, a jump by a overshoots by a/e².
+TEST(SoftPinRun, PinWithATimeArrivesInThatTime) {
+  const std::string move =
+      "keyframes = [{ time = 0 }, { time = 0.001, translate = [0.1, 0, 0] }]\ntime = 1\n";
+  const auto model = sheet("[[pin]]\n" + everywhere + move, "", 2, {"body.cloth.material.mass_damping=0"});
+  Simulation simulation(model);
+  double farthest = 0;
+  while (simulation.frame() < 24) {
+    simulation.advance();
+    farthest = std::max(farthest, centre(simulation).x() - 0.1);
+  }
+  EXPECT_LT(farthest, 0.1 * (1 + std::exp(-2)));
+  EXPECT_NEAR(centre(simulation).x(), 0.2, 0.002);
+}
+
+TEST(SoftPinRun, BothKindsReportTheWeightTheyHold) {
+  const Simulation hard = after(sheet("[[pin]]\nname = 'rail'\n" + row), 90);
+  EXPECT_NEAR(hard.pin_force("rail").sum.y(), mass * g, 2e-3 * mass * g);
+  EXPECT_GE(hard.pin_force("rail").largest, hard.pin_force("rail").mean);
+  EXPECT_GE(hard.pin_force("rail").most, hard.pin_force("rail").sum.norm());
+  const Simulation soft = after(sheet("[[pin]]\nname = 'rail'\nstiffness = 50\n" + row), 90);
+  EXPECT_NEAR(soft.pin_force("rail").sum.y(), mass * g, 2e-3 * mass * g);
+  EXPECT_THROW(hard.pin_force("rial"), Error);
+}
+
+TEST(SoftPinRun, ForceIsZeroAfterTheRelease) {
+  const Simulation simulation = after(sheet("[[pin]]\nname = 'rail'\nuntil = 1\n" + row), 30);
+  EXPECT_EQ(simulation.pin_force("rail").sum.norm(), 0);
+  EXPECT_GT(simulation.pin_force("rail").most, 0);
+}
+
+TEST(SoftPinRun, PinsHandOverWithoutAJump) {
+  const std::string first = "[[pin]]\nname = 'a'\nuntil = 1\n" + row,
+                    soft = "stiffness = 400\ndamping = 0.1\n";
+  for (const bool from_soft : {false, true}) {
+    for (const bool to_soft : {false, true}) {
+      const auto model = sheet(first + (from_soft ? soft : "") + "[[pin]]\nname = 'b'\nfrom = 1\n" + row +
+                               (to_soft ? soft : ""));
+      Simulation simulation = after(model, 23);
+      const int held = model->pins[0].vertices.front();
+      for (int step = 0; step < 30; ++step) {
+        const Vec3 before = simulation.state().positions[static_cast<std::size_t>(held)];
+        simulation.step();
+        // A vertex that nothing holds falls by 8 mm in a frame; a soft pin gives way by weight over
+        // stiffness, 0.05 mm, and swings.
+        EXPECT_LT((simulation.state().positions[static_cast<std::size_t>(held)] - before).norm(), 3e-4);
+      }
+    }
+  }
+}
+
+TEST(SoftPinRun, AccountClosesWhileTheTargetsMoveAndScale) {
+  const std::string move =
+      "keyframes = [{ time = 0 }, { time = 1, translate = [0.1, 0.1, 0], rotate = [0, 60, "
+      "0], scale = [1, 1, 0.7] }]\nstiffness = 30\ndamping = 0.2\n";
+  for (const std::string integrator : {"implicit_euler", "bdf2", "linearly_implicit_euler"}) {
+    SCOPED_TRACE(integrator);
+    Simulation simulation(sheet("[[pin]]\n" + row + move, "", 2, {"solver.integrator=" + integrator}));
+    const double start = simulation.diagnostics().balance();
+    double largest = 0;
+    while (simulation.frame() < 30) {
+      simulation.advance();
+      const Diagnostics& now = simulation.diagnostics();
+      largest = std::max(largest, std::abs(now.balance() - now.unbalanced - start));
+    }
+    EXPECT_GT(simulation.diagnostics().work, 1e-3);
+    EXPECT_LT(largest, 1e-10);
+  }
+}
+
+TEST(SoftPinRun, ResumesAndRunsOnAnyNumberOfThreadsWithTheSameBits) {
+  const auto model = sheet(
+      "[[pin]]\nname = 'hand'\nstiffness = 30\ndamping = 0.2\nfrom = 0.1\nkeyframes = [{ time "
+      "= 0 }, { time = 1, translate = [0.1, 0.1, 0] }]\n" +
+      row);
+  Simulation whole = after(model, 10);
+  const std::vector<std::uint8_t> bytes = whole.checkpoint();
+  Simulation resumed(model);
+  resumed.restore(bytes);
+  EXPECT_EQ(resumed.pin_force("hand").sum, whole.pin_force("hand").sum);
+  set_thread_count(1);
+  while (resumed.frame() < 16) resumed.advance();
+  set_thread_count(2);
+  while (whole.frame() < 16) whole.advance();
+  set_thread_count(0);
+  EXPECT_EQ(resumed.state().positions, whole.state().positions);
+  EXPECT_EQ(resumed.state().velocities, whole.state().velocities);
+}
+
+TEST(SoftPinRun, WrongKeysAreErrors) {
+  EXPECT_THAT(message("[[pin]]\nstiffness = 1\ntime = 1\n" + row), HasSubstr("both say how hard"));
+  EXPECT_THAT(message("[[pin]]\ndamping = 1\n" + row), HasSubstr("stiffness"));
+  EXPECT_THAT(message("[[pin]]\nstiffness = 0\n" + row), HasSubstr("stiffness"));
+  EXPECT_THAT(message("[[pin]]\nkeyframes = [{ time = 0, scale = 0 }]\n" + row), HasSubstr("scale"));
+  EXPECT_THAT(message("[[pin]]\nstiffness = 1\n" + row,
+                      "[[collider]]\nshape = 'box'\nsize = [1, 1, 1]\ncenter = "
+                      "[0, -3, 0]\nkeyframes = [{ time = 0, scale = 2 }]\n"),
+              HasSubstr("colliders keep their size"));
+}
+
+}  // namespace
+}  // namespace muslin
