@@ -100,6 +100,13 @@ void bind_forces(nb::module_& m) {
       .def_ro("mean", &PinForce::mean, "Magnitude on a vertex, mean over its vertices [N].")
       .def_ro("largest", &PinForce::largest, "Magnitude on a vertex, the largest [N].")
       .def_ro("most", &PinForce::most, "Magnitude of `sum`, the largest of all steps so far [N].");
+  nb::class_<AttachmentForce>(m, "AttachmentForce",
+                              "The force of the springs of an attachment on the points of its `body`.")
+      .def_prop_ro(
+          "sum", [](const AttachmentForce& force) { return to_array(force.sum); }, "Of all joints, (3,) [N].")
+      .def_ro("mean", &AttachmentForce::mean, "Magnitude of a joint that holds [N].")
+      .def_ro("largest", &AttachmentForce::largest, "The largest magnitude of a joint [N].")
+      .def_ro("holding", &AttachmentForce::holding, "Joints that hold; 0 before the first step.");
 }
 
 }  // namespace
@@ -221,6 +228,10 @@ void bind_simulation(nb::module_& m) {
           "pin_force",
           [](const Self& self, const std::string& pin) { return self.simulation().pin_force(pin); }, "pin"_a,
           "The force of a pin in the last step.")
+      .def(
+          "attachment_force",
+          [](const Self& self, const std::string& name) { return self.simulation().attachment_force(name); },
+          "attachment"_a, "The force of an attachment after the last step.")
       .def(
           "costs", [](const Self& self) { return costs_of(self.simulation().costs()); },
           "Where the time of contact went since the simulation was made: seconds of \"search\", \"limit\", "

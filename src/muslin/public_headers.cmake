@@ -19,6 +19,8 @@ set(MUSLIN_PUBLIC_HEADERS
     component/selection.hpp
     component/shell/shell_body_settings.hpp
     component/terms.hpp
+    constraint/acting.hpp
+    constraint/attachment_force.hpp
     constraint/pin.hpp
     constraint/prescribed.hpp
     contact/contact_surface.hpp
@@ -46,6 +48,7 @@ set(MUSLIN_PUBLIC_HEADERS
     potential/state.hpp
     potential/state_arrays.hpp
     potential/step_guard.hpp
+    scene/attachment.hpp
     scene/model.hpp
     scene/pressure.hpp
     scene/scene.hpp

@@ -28,7 +28,11 @@ Json contact_record_json(const ContactModel& contact) {
     body["points"] = body["points"].get<std::size_t>() + 1;
     if (surface.is_round(point)) body["axis"].push_back(triple(contact.rest[p]));
   }
-  return {{"distance", contact.distance}, {"bodies", bodies}};
+  Json record = {{"distance", contact.distance}, {"bodies", bodies}};
+  const ContactExemptions& exempt = contact.exempt;
+  if (!exempt.empty())
+    record["joints"] = {{"point_triangles", exempt.point_triangles}, {"point_planes", exempt.point_planes}};
+  return record;
 }
 
 ContactRecord read_contact_record(const Json& contact) {
@@ -46,6 +50,10 @@ ContactRecord read_contact_record(const Json& contact) {
         body.axis.emplace_back(point.at(0).get<double>(), point.at(1).get<double>(),
                                point.at(2).get<double>());
       record.bodies.push_back(std::move(body));
+    }
+    if (contact.contains("joints")) {
+      contact["joints"].at("point_triangles").get_to(record.exempt.point_triangles);
+      contact["joints"].at("point_planes").get_to(record.exempt.point_planes);
     }
     return record;
   } catch (const Json::exception&) {

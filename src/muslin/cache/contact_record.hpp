@@ -24,6 +24,7 @@ struct ContactRecord {
   };
   double distance = 0;       ///< the contact distance d̂ [m]
   std::vector<Body> bodies;  ///< all that have a surface, in the order of the run's bodies
+  ContactExemptions exempt;  ///< at joints; triangles and points are counted over all bodies
 };
 
 /// Returns the object `contact` of run.json.

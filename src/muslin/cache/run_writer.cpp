@@ -151,7 +151,7 @@ struct RunWriter::Impl {
   std::vector<BodyCaches> caches;
   OutputFile diagnostics, probes;
   std::optional<OutputFile> stretches;  ///< only if a shell has, or in an earlier session had, a limit
-  std::optional<OutputFile> pins;       ///< likewise, if the scene has pins
+  std::optional<OutputFile> pins, attachments;  ///< likewise, if the scene has some
   bool resumed = false;
   std::vector<std::string> changes;
   Json sessions = Json::array();
@@ -252,7 +252,7 @@ void RunWriter::Impl::open_files(int frames) {
   };
   diagnostics = table("diagnostics.csv", diagnostics_header, true);
   probes = table("probes.csv", probes_header, true);
-  // Limits and pins may be new on resume.
+  // Limits, pins and attachments may be new on resume.
   const auto table_if = [&](bool wanted, const char* name, std::string_view header) {
     std::error_code code;
     const bool is_there = fs::exists(directory / name, code);
@@ -260,6 +260,7 @@ void RunWriter::Impl::open_files(int frames) {
   };
   stretches = table_if(has_stretch_limit(model()), "stretch.csv", stretch_header);
   pins = table_if(!model().pins.empty(), "pins.csv", pins_header);
+  attachments = table_if(!model().attachments.empty(), "attachments.csv", attachments_header);
 }
 
 /// A table that an earlier version began gets the columns of this one, as it can have only one kind of rows.
@@ -347,6 +348,7 @@ void RunWriter::Impl::append_rows() {
   probes.append(probe_rows(simulation));
   quality.add(simulation.diagnostics());
   if (pins) pins->append(pin_rows(simulation));
+  if (attachments) attachments->append(attachment_rows(simulation));
   if (!stretches) return;
   for (const LimitedStretch& row :
        limited_stretches(model(), simulation.state().positions, simulation.frame())) {
@@ -364,6 +366,7 @@ void RunWriter::Impl::sync() {
   probes.sync();
   if (stretches) stretches->sync();
   if (pins) pins->sync();
+  if (attachments) attachments->sync();
   last_sync = Clock::now();
 }
 
@@ -440,6 +443,11 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
   run["pins"] = Json::array();
   for (const Pin& pin : model.pins)
     run["pins"].push_back({{"name", pin.name}, {"largest_force", simulation.pin_force(pin.name).most}});
+  run["attachments"] = Json::array();
+  for (const Attached& attached : model.attachments)
+    run["attachments"].push_back({{"name", attached.name},
+                                  {"joints", attached.places.size()},
+                                  {"holding", simulation.attachment_force(attached.name).holding}});
   Json all = sessions;
   all.push_back({{"from_frame", first_frame},
                  {"to_frame", simulation.frame()},

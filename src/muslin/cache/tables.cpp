@@ -37,6 +37,7 @@ const std::string_view diagnostics_header =
     "error,unbalanced,crossings,held_back,penetration\n";
 const std::string_view probes_header = "frame,time,name,x,y,z,vx,vy,vz\n";
 const std::string_view pins_header = "frame,time,name,x,y,z,mean,largest\n";
+const std::string_view attachments_header = "frame,time,name,x,y,z,mean,largest,holding\n";
 const std::string_view stretch_header = "frame,stretch,limit,body\n";
 
 std::string diagnostics_row(const Diagnostics& row) {
@@ -71,6 +72,18 @@ std::string pin_rows(const Simulation& simulation) {
     const PinForce force = simulation.pin_force(pin.name);
     text += fmt::format("{},{},{},{},{},{},{},{}\n", row.frame, row.time, quoted(pin.name), force.sum.x(),
                         force.sum.y(), force.sum.z(), force.mean, force.largest);
+  }
+  return text;
+}
+
+std::string attachment_rows(const Simulation& simulation) {
+  const Diagnostics& row = simulation.diagnostics();
+  std::string text;
+  for (const Attached& attached : simulation.model().attachments) {
+    const AttachmentForce force = simulation.attachment_force(attached.name);
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{}\n", row.frame, row.time, quoted(attached.name), force.sum.x(),
+                    force.sum.y(), force.sum.z(), force.mean, force.largest, force.holding);
   }
   return text;
 }

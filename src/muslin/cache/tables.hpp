@@ -1,4 +1,5 @@
-// Reads and writes the tables of a run: diagnostics.csv, probes.csv, pins.csv and stretch.csv.
+// Reads and writes the tables of a run: diagnostics.csv, probes.csv, pins.csv, attachments.csv
+// and stretch.csv.
 #pragma once
 
 #include <filesystem>
@@ -14,14 +15,16 @@ namespace muslin {
 extern const std::string_view diagnostics_header;
 extern const std::string_view probes_header;
 extern const std::string_view pins_header;
+extern const std::string_view attachments_header;
 extern const std::string_view stretch_header;
 
 /// Returns one line. Reading the numbers back gives the same doubles; infinity is `inf`.
 std::string diagnostics_row(const Diagnostics& row);
 /// Returns one line per probe of the model.
 std::string probe_rows(const Simulation& simulation);
-/// Returns one line per pin of the model.
+/// Return one line per pin, and per attachment, of the model.
 std::string pin_rows(const Simulation& simulation);
+std::string attachment_rows(const Simulation& simulation);
 std::string stretch_row(const LimitedStretch& row);
 
 /// Returns the rows of a diagnostics table; an unfinished last line is left out. Tables of earlier versions

@@ -25,7 +25,7 @@ void Holds::step(std::span<const Pin> pins, double time_begin, double time_end, 
     const Pin& pin = pins[p];
     const Vectors anchor = Vectors(anchors).subspan(first, pin.vertices.size());
     first += pin.vertices.size();
-    if (pin.is_soft() || !PinTargets::acts(pin, time_begin, time_end)) {
+    if (pin.is_soft() || !pin.acts(time_begin, time_end)) {
       holding[p] = 0;
       continue;
     }

@@ -28,7 +28,7 @@ struct Holds {
   /// fixed[v] = 1 where v is held at the end of the step, and targets[v] is then its position; elsewhere
   /// fixed[v] = 0 and targets[v] is positions[v].
   ///
-  /// A hard pin that is active at `time_end` holds (PinTargets::acts); one that becomes active records its
+  /// A hard pin that is active at `time_end` holds (Pin::acts); one that becomes active records its
   /// vertices from `positions` and discards them when it ends. Where pins overlap, the later one in `pins`
   /// has priority. A pin's first moment is max(from, 0), as runs start at time 0. Soft pins hold nothing.
   void step(std::span<const Pin> pins, double time_begin, double time_end, ConstVectors positions,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "muslin/api.hpp"
+#include "muslin/constraint/acting.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/point_sequence.hpp"
 
@@ -48,7 +49,8 @@ struct Pin {
   std::vector<double> damping = {};    ///< #vertices, against the motion of the target [N·s/m]; or empty
 
   bool is_soft() const { return !stiffness.empty(); }
-  bool active(double time) const { return time >= from && time < until; }
+  /// True if it acts in the step from time_begin to time_end.
+  bool acts(double time_begin, double time_end) const { return acting(from, until, time_begin, time_end); }
 };
 
 }  // namespace muslin

@@ -31,8 +31,4 @@ Vec3 PinTargets::first_anchor(const Pin& pin, double time, std::size_t i, const 
   return pin.sequence ? Vec3(position - point_of_sequence(pin, time, i)) : position;
 }
 
-bool PinTargets::acts(const Pin& pin, double time_begin, double time_end) {
-  return pin.active(time_end + 1e-6 * (time_end - time_begin));
-}
-
 }  // namespace muslin

@@ -22,9 +22,6 @@ class PinTargets {
 
   /// Returns the anchor of vertex i, which is at `position`, of a pin that begins in a step from `time`.
   static Vec3 first_anchor(const Pin& pin, double time, std::size_t i, const Vec3& position);
-  /// True if the pin acts in a step. `from` and `until` within 1e-6 of a step of `time_end` count as reached:
-  /// a clock that adds up steps is not exact.
-  static bool acts(const Pin& pin, double time_begin, double time_end);
 
  private:
   const Pin& pin_;

@@ -104,7 +104,7 @@ SoftPin::SoftPin(Pin pin) : array_(array_of(pin)) {
 }
 
 std::unique_ptr<Potential> SoftPin::potential(const StepContext& step) const {
-  if (!PinTargets::acts(*pin_, step.time_begin, step.time_end)) return nullptr;
+  if (!pin_->acts(step.time_begin, step.time_end)) return nullptr;
   const std::size_t count = pin_->vertices.size();
   const std::span<const double> numbers = step.history != nullptr
                                               ? step.history->find(array_, numbers_of_vertex * count)

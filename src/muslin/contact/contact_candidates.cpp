@@ -115,20 +115,40 @@ void ContactCandidates::limit_by_rest(ContactPair& pair) const {
   pair.range = std::min(pair.range, rest_range * found->distance);
 }
 
-void ContactCandidates::ignore_pairs(std::span<const std::array<int, 2>> triangles) {
+void ContactCandidates::free_edges(int e, int f) {
+  if (e >= 0 && f >= 0)
+    free_.push_back(ContactPair::key_of(PairKind::edge_edge, std::min(e, f), std::max(e, f)));
+}
+
+void ContactCandidates::ignore_pairs(std::span<const std::array<int, 2>> triangles,
+                                     const ContactExemptions& joints) {
   free_.clear();
   for (const auto& [first, second] : triangles) {
     for (int i = 0; i < 3; ++i) {
       const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
       free_.push_back(ContactPair::key_of(PairKind::vertex_triangle, surface_->triangles()[a][i], second));
       free_.push_back(ContactPair::key_of(PairKind::vertex_triangle, surface_->triangles()[b][i], first));
-      for (int j = 0; j < 3; ++j) {
-        const int e = surface_->triangle_edges()[a][i], f = surface_->triangle_edges()[b][j];
-        if (e < 0 || f < 0) continue;
-        free_.push_back(ContactPair::key_of(PairKind::edge_edge, std::min(e, f), std::max(e, f)));
+      for (int j = 0; j < 3; ++j)
+        free_edges(surface_->triangle_edges()[a][i], surface_->triangle_edges()[b][j]);
+    }
+  }
+  for (const auto& [point, triangle] : joints.point_triangles) {
+    const auto b = static_cast<std::size_t>(triangle);
+    free_.push_back(ContactPair::key_of(PairKind::vertex_triangle, point, triangle));
+    for (const int t : surface_->triangles_at_point(point)) {
+      const auto a = static_cast<std::size_t>(t);
+      for (int i = 0; i < 3; ++i) {
+        free_.push_back(ContactPair::key_of(PairKind::vertex_triangle, surface_->triangles()[b][i], t));
+        const int e = surface_->triangle_edges()[a][i];
+        if (e < 0) continue;
+        const ContactSurface::Edge& ends = surface_->edges()[static_cast<std::size_t>(e)];
+        if (ends[0] != point && ends[1] != point) continue;
+        for (int j = 0; j < 3; ++j) free_edges(e, surface_->triangle_edges()[b][j]);
       }
     }
   }
+  for (const auto& [point, plane] : joints.point_planes)
+    free_.push_back(ContactPair::key_of(PairKind::point_plane, point, plane));
   std::sort(free_.begin(), free_.end());
 }
 
@@ -251,6 +271,7 @@ void ContactCandidates::add_near_plane(int plane) {
     const PointBox box = boxes_.around(p);
     const double bottom = n.dot(box.middle()) - extent.dot(box.half());
     if (bottom - top > radius + surface_->radius_of(point) || p == carrier) continue;
+    if (is_free(PairKind::point_plane, point, plane)) continue;
     if (surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point)))
       pairs_.push_back(make_pair(PairKind::point_plane, point, plane));
   }
@@ -268,7 +289,9 @@ void ContactCandidates::add_near_turning_plane(int plane) {
   const double turn = 2 * (2 * r * (u.norm() + v.norm()) + 4 * r * r) / n.norm();
   const double radius = surface_->radius_of(half_space.point) + contact_distance_;
   for (int point = 0; point < static_cast<int>(boxes_.size()); ++point) {
-    if (!surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point))) continue;
+    if (!surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point)) ||
+        is_free(PairKind::point_plane, point, plane))
+      continue;
     const Vec3 away = middle(point) - a;
     const double reach = half(point) + r;
     const double least = n.dot(away) / n.norm() - reach - turn * (away.norm() + reach);

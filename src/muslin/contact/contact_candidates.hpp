@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "muslin/contact/contact_exemptions.hpp"
 #include "muslin/contact/contact_surface.hpp"
 #include "muslin/contact/distance.hpp"
 #include "muslin/contact/pair_culling.hpp"
@@ -56,9 +57,9 @@ class ContactCandidates {
   ContactCandidates(std::shared_ptr<const ContactSurface> surface, ConstVectors rest,
                     double contact_distance);
 
-  /// Excludes pairs between features of triangle first and triangle second, from the next update on; by
-  /// default none are excluded.
-  void ignore_pairs(std::span<const std::array<int, 2>> triangles);
+  /// Excludes pairs between features of triangle first and triangle second, and those that joints free of
+  /// contact, from the next update on, instead of those of the last call; by default none are excluded.
+  void ignore_pairs(std::span<const std::array<int, 2>> triangles, const ContactExemptions& joints);
 
   /// Finds the pairs that may come within range while all points move linearly in time from `begin` to `end`
   /// (#P by 3, [m]), each within ± `margin` [m] along every axis. If no displacement exceeds `long_way` [m],
@@ -85,6 +86,7 @@ class ContactCandidates {
   void limit_by_rest(ContactPair& pair) const;
   ContactPair make_pair(PairKind kind, int first, int second) const;
   bool is_free(PairKind kind, int first, int second) const;
+  void free_edges(int e, int f);
   struct Near {
     std::vector<ContactPair> pairs;
     std::vector<float> distances;

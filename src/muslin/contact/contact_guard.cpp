@@ -104,7 +104,7 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
       throw Error(ErrorKind::usage, "a body's frame has a vertex that does not exist", "check the indices");
   }
   require_fit(memory_, *model_);
-  candidates_.ignore_pairs(memory_.tangled);
+  candidates_.ignore_pairs(memory_.tangled, model_->exempt);
   rebuild();
 }
 
@@ -340,10 +340,9 @@ std::vector<std::array<int, 2>> ContactGuard::crossing(ConstVectors q) {
   model_->map->apply(q, x_);
   IntersectionOptions options;
   options.wanted = [&](int a, int b) {
-    const auto body = [&](int t) {
-      return surface.body_of(surface.triangles()[static_cast<std::size_t>(t)][0]);
-    };
-    return surface.may_touch(body(a), body(b));
+    const auto corners = [&](int t) { return surface.triangles()[static_cast<std::size_t>(t)]; };
+    return surface.may_touch(surface.body_of(corners(a)[0]), surface.body_of(corners(b)[0])) &&
+           !model_->exempt.has(corners(a), a, corners(b), b);
   };
   std::vector<std::array<int, 2>> pairs;
   for (const Intersection& i : find_intersections(x_, surface.triangles(), options))
@@ -355,7 +354,7 @@ void ContactGuard::allow_initial_intersections(ConstVectors q) {
   std::vector<std::array<int, 2>> now = crossing(q);
   if (now == memory_.tangled) return;
   memory_.tangled = std::move(now);
-  candidates_.ignore_pairs(memory_.tangled);
+  candidates_.ignore_pairs(memory_.tangled, model_->exempt);
   rebuild();
 }
 

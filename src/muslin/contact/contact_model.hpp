@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "muslin/contact/contact_exemptions.hpp"
 #include "muslin/contact/contact_surface.hpp"
 #include "muslin/contact/step_limiter.hpp"
 #include "muslin/contact/surface_map.hpp"
@@ -19,6 +20,7 @@ struct ContactModel {
   double distance = 2e-3;                 ///< d̂, the gap below which contact acts [m]
   double friction = 0;                    ///< default of Coulomb's μ
   StepLimits limits;                      ///< gap floor; prescribed vertices, rigid groups
+  ContactExemptions exempt;
   // For messages; may be empty.
   std::vector<std::string> names;  ///< of the surface's bodies
   std::vector<int> faces;          ///< #T, of the user's mesh, from 0; −1 of balls and capsules

@@ -61,11 +61,15 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
   std::vector<Crossing> all;
   IntersectionOptions options;
   options.limit = limit;
-  options.wanted = [&](int a, int b) { return surface.may_touch(body_of(a), body_of(b)); };
+  options.wanted = [&](int a, int b) {
+    return surface.may_touch(body_of(a), body_of(b)) &&
+           !model.exempt.has(surface.triangles()[at(a)], a, surface.triangles()[at(b)], b);
+  };
   for (const Intersection& i : find_intersections(x, surface.triangles(), options))
     all.push_back({Crossing::Kind::crossing, body_of(i.first), body_of(i.second), i.first, i.second, i.at});
 
   ContactCandidates candidates(model.surface, model.rest, model.distance);
+  candidates.ignore_pairs({}, model.exempt);
   candidates.update(x, x, 0);
   const Owners owners(surface);
   std::vector<Crossing> close;

@@ -48,6 +48,19 @@ std::array<Vec3, 3> points_of_plane(ConstVectors corners) {
   return {middle, middle + across, middle + up};
 }
 
+/// A plane has three points here, and may have had one in the run. Returns how many were added before a point
+/// of the run.
+int points_added_before(const ContactRecord& record, int point) {
+  constexpr std::size_t of_plane = 3;
+  std::size_t seen = 0, added = 0;
+  for (const ContactRecord::Body& body : record.bodies) {
+    seen += body.points;
+    if (seen > static_cast<std::size_t>(point)) break;
+    if (body.points < of_plane && body.axis.empty()) added += of_plane - body.points;
+  }
+  return static_cast<int>(added);
+}
+
 }  // namespace
 
 CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record) : run_(run) {
@@ -92,6 +105,9 @@ CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record
     bodies_.push_back(body);
     places_.push_back(place);
   }
+  contact_.exempt = record.exempt;
+  for (auto* pairs : {&contact_.exempt.point_triangles, &contact_.exempt.point_planes})
+    for (std::array<int, 2>& pair : *pairs) pair[0] += points_added_before(record, pair[0]);
   contact_.distance = record.distance;
   contact_.map = std::make_shared<SurfaceMap>(SurfaceMap::identity(contact_.rest.size()));
   contact_.surface = std::make_shared<ContactSurface>(std::move(triangles), std::move(body_of_point),
@@ -127,6 +143,7 @@ std::vector<Crossing> CachedSurfaces::crossings(ConstVectors points) const {
 std::optional<Gap> CachedSurfaces::smallest_gap(ConstVectors points) const {
   const ContactSurface& surface = *contact_.surface;
   ContactCandidates candidates(contact_.surface, contact_.rest, contact_.distance);
+  candidates.ignore_pairs({}, contact_.exempt);
   candidates.update(points, points, 0);
   std::optional<Gap> smallest;
   for (const ContactPair& pair : candidates.pairs()) {

@@ -13,6 +13,7 @@
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
+#include "muslin/scene/joint_exemptions.hpp"
 
 namespace muslin {
 namespace {
@@ -115,6 +116,7 @@ class ContactBuilder {
     model->map =
         std::make_shared<SurfaceMap>(is_identity() ? SurfaceMap::identity(model_.vertex_count())
                                                    : SurfaceMap(model_.vertex_count(), offsets_, entries_));
+    if (!model_.attachments.empty()) model->exempt = exemptions_at_joints(model_, *model);
     model_.contact = model;
   }
 
@@ -151,6 +153,7 @@ void warn_of_pressed_start(Model& model) {
   if (!(contact.distance > 0)) return;
   const ContactSurface& surface = *contact.surface;
   ContactCandidates candidates(contact.surface, contact.rest, contact.distance);
+  candidates.ignore_pairs({}, contact.exempt);
   candidates.update(contact.rest, contact.rest, 0);
   std::map<std::pair<int, int>, double> gaps;  // the smallest, by bodies
   for (const ContactPair& pair : candidates.pairs()) {

@@ -72,6 +72,13 @@ std::vector<std::string> movable_names(const Scene& scene) {
   return names;
 }
 
+std::vector<std::string> all_names(const Scene& scene) {
+  std::vector<std::string> names = movable_names(scene);
+  for (const ColliderSettings& collider : scene.colliders)
+    if (!collider.is_free()) names.push_back(collider.name);
+  return names;
+}
+
 bool is_rigid(const Scene& scene, const std::string& name) {
   return std::any_of(scene.colliders.begin(), scene.colliders.end(),
                      [&](const ColliderSettings& collider) { return collider.name == name; });

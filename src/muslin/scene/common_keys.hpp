@@ -46,6 +46,8 @@ schema::Declaration keyed_number_key(std::string name, KeyedNumber S::* member, 
 
 /// Returns the names of all that have mass: bodies, and colliders with a density.
 std::vector<std::string> movable_names(const Scene& scene);
+/// Returns the names of all bodies and colliders.
+std::vector<std::string> all_names(const Scene& scene);
 /// True if a collider has this name.
 bool is_rigid(const Scene& scene, const std::string& name);
 /// Throws Error(input) if the scene has nothing that moves.

@@ -107,6 +107,9 @@ std::string describe_json(const Model& model, std::span<const Crossing> crossing
   for (const Pin& pin : model.pins) {
     json["pins"].push_back({{"name", pin.name}, {"vertices", pin.vertices.size()}});
   }
+  json["attachments"] = Json::array();
+  for (const Attached& attached : model.attachments)
+    json["attachments"].push_back({{"name", attached.name}, {"joints", attached.places.size()}});
   json["forces"] = Json::array();
   for (const ForceSettings& force : scene.forces) {
     json["forces"].push_back({{"name", force.name}, {"type", force.type}});
@@ -135,6 +138,8 @@ std::string describe_text(const Model& model, std::span<const Crossing> crossing
     text +=
         fmt::format("pin {}: {}\n", pin.name, counted(pin.vertices.size(), "held vertex", "held vertices"));
   }
+  for (const Attached& attached : model.attachments)
+    text += fmt::format("attachment {}: {}\n", attached.name, counted(attached.places.size(), "joint"));
   if (!scene.pressures.empty()) text += counted(scene.pressures.size(), "pressure") + ", ";
   text += counted(scene.forces.size(), "force") + ", " + counted(scene.probes.size(), "probe") + "\n";
   text += fmt::format("{:.6g} s in {} frames, {} by {}", scene.time.duration, scene.time.frames(),

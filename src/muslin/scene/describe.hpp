@@ -13,8 +13,9 @@ namespace muslin {
 /// Returns JSON: `title`, `time`, `bodies` (a list, each with `name`, `vertices`, `voxels`, `tetrahedra`,
 /// `springs.edge`, `.face_diagonal`, `.body_diagonal`, `mass`, `coverage`, `contour_distance`, …),
 /// `colliders` (each with `name`, `shape`, `movement`, …), `contact` (null if nothing can touch), `pins`,
-/// `forces`, `probes`, `warnings`. `crossings` at the start become a list of the same name, each with `kind`,
-/// `bodies`, `faces` (counted from 0 in the mesh, null of round shapes and planes) and `at`.
+/// `attachments`, `forces`, `probes`, `warnings`. `crossings` at the start become a list of the same name,
+/// each with `kind`, `bodies`, `faces` (counted from 0 in the mesh, null of round shapes and planes) and
+/// `at`.
 std::string describe_json(const Model& model, std::span<const Crossing> crossings = {});
 /// Returns only `bodies` and `colliders`, for stats.json.
 std::string statistics_json(const Model& model);

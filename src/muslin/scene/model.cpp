@@ -25,6 +25,10 @@ const Component& Model::body(std::string_view name) const { return find_by_name(
 
 const Pin& Model::pin(std::string_view name) const { return find_by_name(pins, name, "pin"); }
 
+const Attached& Model::attachment(std::string_view name) const {
+  return find_by_name(attachments, name, "attachment");
+}
+
 const Probe& Model::probe(std::string_view name) const { return find_by_name(probes, name, "probe"); }
 
 const Component& Model::body_of(std::size_t vertex) const {

@@ -2,6 +2,7 @@
 // Built once from a Scene; shared read-only by the simulation and its writers.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -18,12 +19,21 @@
 
 namespace muslin {
 
+class Attachment;
 struct ContactModel;
 
 struct Probe {
   std::string name;
   int body = 0;
   Embedding point;  ///< one point, from the vertices of the body
+};
+
+/// Points of two bodies that an [[attachment]] holds together.
+struct Attached {
+  std::string name;
+  std::shared_ptr<const Attachment> springs;
+  std::array<int, 2> bodies{};              ///< indices
+  std::vector<std::array<Vec3, 2>> places;  ///< #joints, the points of both at the start [m]
 };
 
 struct MUSLIN_API Model {
@@ -36,14 +46,16 @@ struct MUSLIN_API Model {
   std::vector<LoadTerm> loads;            ///< over all vertices
   std::vector<Pin> pins;
   std::vector<Prescribed> prescribed;
+  std::vector<Attached> attachments;
   std::vector<Probe> probes;
   std::shared_ptr<const ContactModel> contact;  ///< null if nothing can touch
   std::vector<std::string> warnings;            ///< for the user, before a run
 
   std::size_t vertex_count() const { return rest_positions.size(); }
-  /// Return the component, pin or probe of that name. Errors: usage, with the nearest name.
+  /// Return the component, pin, attachment or probe of that name. Errors: usage, with the nearest name.
   const Component& body(std::string_view name) const;
   const Pin& pin(std::string_view name) const;
+  const Attached& attachment(std::string_view name) const;
   const Probe& probe(std::string_view name) const;
   /// Returns the component of a vertex of the model. Errors: usage, if there is no such vertex.
   const Component& body_of(std::size_t vertex) const;

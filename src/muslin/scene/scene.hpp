@@ -21,6 +21,7 @@
 #include "muslin/force/keyed.hpp"
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/io/mesh_file.hpp"
+#include "muslin/scene/attachment.hpp"
 #include "muslin/scene/pressure.hpp"
 #include "muslin/schema/own_settings.hpp"
 #include "muslin/solver/solver.hpp"
@@ -94,6 +95,7 @@ struct Scene {
   std::vector<PinSettings> pins;
   std::vector<ForceSettings> forces;
   std::vector<PressureSettings> pressures;
+  std::vector<AttachmentSettings> attachments;
   std::vector<ProbeSettings> probes;
   /// Components that a program adds, built after those above. Pins, forces and probes may name them.
   std::vector<ComponentSource> components;

@@ -212,6 +212,9 @@ schema::Table declare_scene() {
                 schema::sections("pressure", &Scene::pressures, pressure_table, finish_pressure)
                     .may_change_on_resume()
                     .means("pressures inside shells"),
+                schema::sections("attachment", &Scene::attachments, attachment_table, finish_attachment)
+                    .may_change_on_resume()
+                    .means("vertices held to points of other bodies"),
                 schema::sections("probe", &Scene::probes, probe_table, finish_probe)
                     .may_change_on_resume()
                     .means("points whose path is written to `probes.csv`")});

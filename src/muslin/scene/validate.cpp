@@ -59,8 +59,11 @@ void validate(const Scene& scene) {
   for (const PressureSettings& pressure : scene.pressures)
     check_body_name(subject_of("[[pressure]]", pressure), pressure.body, movable);
   for (const PinSettings& pin : scene.pins) check_body_name(subject_of("[[pin]]", pin), pin.body, movable);
-  std::vector<std::string> all = movable;  // probes may be on colliders that stand still
-  for (const ColliderSettings& collider : scene.colliders) all.push_back(collider.name);
+  const std::vector<std::string> all = all_names(scene);  // probes may be on colliders that stand still
+  for (const AttachmentSettings& attachment : scene.attachments) {
+    check_body_name(subject_of("[[attachment]]", attachment), attachment.body, movable);
+    check_body_name(subject_of("[[attachment]]", attachment), attachment.to, all);
+  }
   for (const ProbeSettings& probe : scene.probes)
     check_body_name(subject_of("[[probe]]", probe), probe.body, all);
   for (const auto& [name, mesh] : scene.meshes)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "muslin/constraint/pin_targets.hpp"
 #include "muslin/constraint/soft_pin.hpp"
 
 namespace muslin {
@@ -26,14 +25,14 @@ void update_pin_forces(std::span<const Pin> pins, double time_begin, double time
                        const History& history, std::vector<PinForce>& forces) {
   forces.resize(pins.size());
   std::vector<int> owner(reactions.size(), -1);  // of the held vertices
-  const auto acts = [&](const Pin& pin) { return PinTargets::acts(pin, time_begin, time_end); };
   for (std::size_t p = 0; p < pins.size(); ++p) {
-    if (pins[p].is_soft() || !acts(pins[p])) continue;
+    if (pins[p].is_soft() || !pins[p].acts(time_begin, time_end)) continue;
     for (const int v : pins[p].vertices) owner[static_cast<std::size_t>(v)] = static_cast<int>(p);
   }
   for (std::size_t p = 0; p < pins.size(); ++p) {
     std::vector<Vec3> of_vertices;
-    if (pins[p].is_soft() && acts(pins[p])) of_vertices = SoftPin::forces(pins[p], history);
+    if (pins[p].is_soft() && pins[p].acts(time_begin, time_end))
+      of_vertices = SoftPin::forces(pins[p], history);
     for (const int v : pins[p].vertices)
       if (owner[static_cast<std::size_t>(v)] == static_cast<int>(p))
         of_vertices.push_back(reactions[static_cast<std::size_t>(v)]);

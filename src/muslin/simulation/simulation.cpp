@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/constraint/attachment.hpp"
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/simulation/simulation_impl.hpp"
@@ -220,6 +221,10 @@ Vec3 Simulation::probe(const std::string& name) const {
 PinForce Simulation::pin_force(const std::string& name) const {
   const auto p = static_cast<std::size_t>(&model().pin(name) - model().pins.data());
   return p < impl_->state.pin_forces.size() ? impl_->state.pin_forces[p] : PinForce{};
+}
+
+AttachmentForce Simulation::attachment_force(const std::string& name) const {
+  return model().attachment(name).springs->force(state().time, state().positions, state().history);
 }
 
 void Simulation::add_load(LoadTerm load) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "muslin/api.hpp"
+#include "muslin/constraint/attachment_force.hpp"
 #include "muslin/core/progress.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/state.hpp"
@@ -49,6 +50,8 @@ class MUSLIN_API Simulation {
   Vec3 probe(const std::string& name) const;
   /// Returns the force of the pin of that name in the last step. Errors: usage, with the nearest name.
   PinForce pin_force(const std::string& name) const;
+  /// Returns the force of the springs of the attachment of that name. Errors: usage, with the nearest name.
+  AttachmentForce attachment_force(const std::string& name) const;
 
   /// Advances to the end of the next frame. A step that fails is halved, up to 8 times; if that fails too,
   /// throws Error(solver) with frame, time, place and remedy, and the state is that of the last good step.

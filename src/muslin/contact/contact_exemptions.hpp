@@ -1,0 +1,30 @@
+// ContactExemptions lists features that are free of contact because bodies are joined there.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "muslin/core/vectors.hpp"
+
+namespace muslin {
+
+/// A point of a surface is free of a triangle: it and the edges and triangles that it belongs to do not touch
+/// the triangle, its edges and its corners. Other features of these triangles still do.
+struct ContactExemptions {
+  std::vector<std::array<int, 2>> point_triangles;  ///< a point and a triangle of the surface, ascending
+  std::vector<std::array<int, 2>> point_planes;     ///< a point of the surface and a plane
+
+  bool empty() const { return point_triangles.empty() && point_planes.empty(); }
+  /// True if a corner of one triangle is free of the other one; triangles are given by corners and number.
+  bool has(const Vec3i& first_corners, int first, const Vec3i& second_corners, int second) const {
+    const auto is_free = [&](int point, int triangle) {
+      return std::binary_search(point_triangles.begin(), point_triangles.end(), std::array{point, triangle});
+    };
+    for (int i = 0; i < 3; ++i)
+      if (is_free(first_corners[i], second) || is_free(second_corners[i], first)) return true;
+    return false;
+  }
+};
+
+}  // namespace muslin
