@@ -257,6 +257,8 @@ def scene_input(scene, names, snapshots, first, last):
                 cloth.rest_mesh = name + ".rest.obj"
             if m.use_stretch_limit:
                 cloth.stretch_limit = m.stretch_limit
+        if m.use_soft_pins and cloth.pinned:
+            cloth.pin_stiffness = m.pin_stiffness
         if m.use_release and cloth.pinned:
             # Less than a step later: in the frame itself they still hold.
             cloth.release = (max(m.release_frame - first, 0) + 0.5 / (props.steps() or 1000)) / rate

@@ -183,6 +183,11 @@ class PHYSICS_PT_muslin_pins(ClothPanel, Panel):
         column = layout.column()
         column.enabled = bool(m.pin_group)
         column.prop(m, "pin_animated")
+        row = column.row(heading="Soft")
+        row.prop(m, "use_soft_pins", text="")
+        sub = row.row()
+        sub.enabled = m.use_soft_pins
+        sub.prop(m, "pin_stiffness", text="")
         row = column.row(heading="Release")
         row.prop(m, "use_release", text="")
         sub = row.row()

@@ -39,6 +39,11 @@ class MuslinObject(bpy.types.PropertyGroup):
         name="Follow Animation", default=True,
         description="Held vertices follow shape keys, armatures and other modifiers above the Muslin modifier, and "
                     "the object's own motion")
+    use_soft_pins: BoolProperty(name="Soft Pins", description="Springs pull the vertices of the group to their places")
+    pin_stiffness: FloatProperty(
+        name="Pin Stiffness", default=100, min=1e-3, soft_max=1e4,
+        description="Of the springs of all vertices together [N/m]: a load of 1 N displaces them by its inverse, in "
+                    "metres")
     use_release: BoolProperty(name="Release", description="The pins let go after a frame")
     release_frame: IntProperty(name="Release Frame", default=50)
     use_self_contact: BoolProperty(

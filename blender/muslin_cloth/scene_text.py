@@ -21,6 +21,7 @@ class Cloth:
     rest_mesh: str = ""  # file name
     pin: str = ""  # file name of the sequence; "": stands still
     pinned: bool = False
+    pin_stiffness: Optional[float] = None  # of soft pins, all together [N/m]; None: they hold exactly
     release: Optional[float] = None  # when the pin lets go [s]
     self_contact: bool = True
     friction: Optional[float] = None  # None: the scene's
@@ -137,6 +138,8 @@ def _pin(cloth, moving):
              'where = { group = "pinned" }']
     if cloth.pin and moving:
         lines.append(f"sequence = {quoted(cloth.pin)}")
+    if cloth.pin_stiffness is not None:
+        lines.append(f"stiffness = {number(cloth.pin_stiffness)}")
     if cloth.release is not None:
         lines.append(f"until = {number(cloth.release)}")
     return lines

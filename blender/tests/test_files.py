@@ -147,7 +147,7 @@ class SceneText(Scratch):
             wind=scene_text.Wind([(1, 0, 0), (2, 0, 0)], gust=0.5, gust_length=2, seed=7),
             cloths=[scene_text.Cloth("a b", "shell", "cotton", pinned=True, pin="a b.pc2", rest_mesh="a b.obj"),
                     scene_text.Cloth("solid", "lattice", "rubber", thickness=0.2, voxel_width=0.2, pinned=True,
-                                     release=0.25, self_contact=False)])
+                                     release=0.25, pin_stiffness=40, self_contact=False)])
 
     def check(self, scene, moving=False):
         self.square("a b", uvs=[(0, 0), (1, 0), (1, 1), (0, 1)], pinned=[0, 1])

@@ -254,3 +254,23 @@ def test_cut_sheet_goes_on_as_two():
     assert simulation.positions[:7, 1].mean() < height - 0.5  # the lower half falls
     with pytest.raises(muslin.UsageError, match="share no edge"):
         simulation.cut([(0, 8)], body="cloth")
+
+
+def test_pins_and_attachments_report_their_forces():
+    where = {"group": "top"}
+    tables = shell_tables(
+        pin=[{"name": "hand", "body": "cloth", "where": where, "stiffness": 200, "damping": 5}],
+        collider=[{"name": "bar", "shape": "box", "size": [1, 1, 1], "center": [0, 4, 0], "contact": False}],
+        attachment=[{"name": "cord", "body": "cloth", "where": where, "to": "bar", "rest": "cord", "stiffness": 200,
+                     "damping": 5}])
+    simulation = muslin.Simulation(muslin.make_scene(tables))
+    assert simulation.attachment_force("cord").holding == 0  # before the first step
+    for _ in range(72):
+        simulation.advance()
+    pin, cord = simulation.pin_force("hand"), simulation.attachment_force("cord")
+    weight = 9.8 * simulation.model.body("cloth").mass
+    assert pin.sum[1] + cord.sum[1] == pytest.approx(weight, rel=0.05)
+    assert cord.holding == 7 and 0 < cord.mean <= cord.largest and 0 < pin.mean <= pin.largest
+    assert pin.most >= np.linalg.norm(pin.sum)
+    with pytest.raises(muslin.UsageError, match="hand"):
+        simulation.pin_force("hands")
