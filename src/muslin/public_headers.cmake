@@ -55,6 +55,7 @@ set(MUSLIN_PUBLIC_HEADERS
     scene/validate.hpp
     scene/wind_force_settings.hpp
     schema/own_settings.hpp
+    schema/variation.hpp
     simulation/diagnostics.hpp
     simulation/pin_force.hpp
     simulation/simulated_body.hpp

@@ -10,6 +10,7 @@
 
 #include "muslin/api.hpp"
 #include "muslin/material/shell_material.hpp"
+#include "muslin/schema/variation.hpp"
 
 namespace muslin {
 
@@ -31,6 +32,7 @@ struct Material {
   double poisson = 0.3;                  ///< ν of a solid
   double mass_damping = 0;               ///< Rayleigh α [1/s]
   double stiffness_damping = 0;          ///< Rayleigh β [s]
+  schema::Variations variations;         ///< of those numbers of the lattice that vary
   std::optional<ShellMaterial> shell;
 
   bool has_springs() const { return law == "springs"; }

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "muslin/energy/solid_laws.hpp"
-#include "muslin/material/material.hpp"
+#include "muslin/material/varied_material.hpp"
 #include "muslin/schema/declare.hpp"
 
 namespace muslin {
@@ -17,12 +17,14 @@ using schema::Declaration;
 // Upper bounds far above any material: they keep products of the quantities finite.
 constexpr Range modulus{0, 1e15, false};
 constexpr Range damping{0, 1e6, false};
+constexpr schema::VaryingForms lattice_forms{.map = false, .keyframes = false};
 
 /// A modulus of springs, in whose place a scene may give Young's modulus.
 Declaration spring_modulus(const char* name, double Material::* member, const char* meaning) {
   return schema::number(name, member)
       .unit("N/m²")
       .range(modulus)
+      .varies(&Material::variations, lattice_forms)
       .means(meaning)
       .excludes("youngs_modulus", fmt::format("`{}` stands beside `youngs_modulus`, which decides it", name));
 }
@@ -51,6 +53,7 @@ const schema::Table& lattice_material_table() {
       {schema::number("density", &Material::density)
            .unit("kg/m³")
            .range({0, 1e6, true})
+           .varies(&Material::variations, lattice_forms)
            .required_without({"base"})
            .means("mass per volume"),
        spring_modulus("edge_modulus", &Material::edge_modulus,
@@ -63,19 +66,23 @@ const schema::Table& lattice_material_table() {
        schema::number("volume_modulus", &Material::volume_modulus)
            .unit("N/m²")
            .range(modulus)
+           .varies(&Material::variations, lattice_forms)
            .means("resistance of each voxel to a change of volume; 0 is off"),
        schema::number("mass_damping", &Material::mass_damping)
            .unit("1/s")
            .range(damping)
+           .varies(&Material::variations, lattice_forms)
            .means("Rayleigh's α: slows all motion, like a viscous fluid"),
        schema::number("stiffness_damping", &Material::stiffness_damping)
            .unit("s")
            .range(damping)
+           .varies(&Material::variations, lattice_forms)
            .means("Rayleigh's β: damps stretching only"),
        law_key(),
        schema::number("youngs_modulus", &Material::youngs_modulus)
            .unit("N/m²")
            .range({0, 1e15, true})
+           .varies(&Material::variations, lattice_forms)
            .shown_if<Material>(is_solid)
            .means(
                "Young's modulus of the solid; with springs, of a large block along its axes, in place of the "
@@ -86,6 +93,14 @@ const schema::Table& lattice_material_table() {
            .shown_if<Material>(is_solid)
            .means("Poisson's ratio of the solid")});
   return table;
+}
+
+Material with_numbers(const Material& material, std::span<const double> values) {
+  Material result = material;
+  result.variations.clear();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    lattice_material_table().set_number(material.variations[i].key, values[i], result);
+  return result;
 }
 
 }  // namespace muslin

@@ -10,6 +10,7 @@
 #include "muslin/core/toml_table.hpp"
 #include "muslin/material/derive_anew.hpp"
 #include "muslin/material/measured_sheet.hpp"
+#include "muslin/material/varied_material.hpp"
 #include "muslin/schema/declare.hpp"
 
 namespace muslin {
@@ -17,6 +18,7 @@ namespace {
 
 constexpr Range sheet_modulus{0, 1e12, false};
 constexpr Range sheet_damping{0, 1e6, false};
+constexpr schema::VaryingForms shell_forms{.map = false, .keyframes = false};
 
 /// Returns the bias rigidity of an orthotropic plate whose twisting rigidity is the geometric mean of the two
 /// bending ones.
@@ -63,9 +65,22 @@ constexpr DerivedNumber derived_numbers[] = {
      [](const ShellMaterial& m) { return m.stiffness_damping; }},
 };
 
+/// Derives numbers anew whose base has the derived ones, unless keep(number).
+template <class Keep>
+void derive_anew(const ShellMaterial& base, ShellMaterial& material, const Keep& keep) {
+  for (const DerivedNumber& number : derived_numbers)
+    if (!keep(number) && base.*number.value == number.derive(base))
+      material.*number.value = number.derive(material);
+}
+
 /// Derives missing values from given ones.
 void complete(const TomlTable& table, ShellMaterial& m) {
   // A modulus takes the place of the base's curve.
+  for (const auto& [curve, modulus] :
+       {std::pair{"warp_curve", "membrane_warp"}, std::pair{"weft_curve", "membrane_weft"},
+        std::pair{"shear_curve", "membrane_shear"}, std::pair{"bending_warp_curve", "bending_warp"},
+        std::pair{"bending_weft_curve", "bending_weft"}})
+    if (table.has(curve)) schema::forget_variation(m.variations, modulus);
   if (table.has("membrane_warp")) m.warp_curve.reset();
   if (table.has("membrane_weft")) m.weft_curve.reset();
   if (table.has("membrane_shear")) m.shear_curve.reset();
@@ -76,11 +91,13 @@ void complete(const TomlTable& table, ShellMaterial& m) {
   if (table.has("base")) return;
   if (!table.has("membrane_weft") && !table.has("weft_curve")) {
     m.membrane_weft = m.membrane_warp;
+    schema::copy_variation(m.variations, "membrane_warp", "membrane_weft");
     m.weft_curve = m.warp_curve;
   }
   if (!table.has("poisson")) m.poisson = 0.25;
   if (!table.has("bending_weft") && !table.has("bending_weft_curve")) {
     m.bending_weft = m.bending_warp;
+    schema::copy_variation(m.variations, "bending_warp", "bending_weft");
     m.bending_weft_curve = m.bending_warp_curve;
   }
   for (const DerivedNumber& number : derived_numbers)
@@ -134,23 +151,27 @@ schema::Table declared() {
       {number("areal_density", &ShellMaterial::areal_density)
            .unit("kg/m²")
            .range({0, 1e6, true})
+           .varies(&Sheet::variations, shell_forms)
            .required_without({"base"})
            .means("mass per area"),
        number("membrane_warp", &ShellMaterial::membrane_warp)
            .unit("N/m")
            .range(sheet_modulus)
+           .varies(&Sheet::variations, shell_forms)
            .required_without({"base", "warp_curve"})
            .shown_if<Sheet>([](const Sheet& m) { return !m.warp_curve; })
            .means("force per width and strain along warp: Young's modulus × thickness"),
        number("membrane_weft", &ShellMaterial::membrane_weft)
            .unit("N/m")
            .range(sheet_modulus)
+           .varies(&Sheet::variations, shell_forms)
            .otherwise("as warp")
            .shown_if<Sheet>([](const Sheet& m) { return !m.weft_curve; })
            .means("force per width and strain along weft"),
        number("membrane_shear", &ShellMaterial::membrane_shear)
            .unit("N/m")
            .range(sheet_modulus)
+           .varies(&Sheet::variations, shell_forms)
            .otherwise("as in an isotropic sheet")
            .shown_if<Sheet>([](const Sheet& m) { return !m.shear_curve; })
            .means("force per width and radian"),
@@ -173,18 +194,21 @@ schema::Table declared() {
        number("bending_warp", &ShellMaterial::bending_warp)
            .unit("N·m")
            .range(sheet_modulus)
+           .varies(&Sheet::variations, shell_forms)
            .required_without({"base", "bending_warp_curve"})
            .shown_if<Sheet>([](const Sheet& m) { return !m.bending_warp_curve; })
            .means("moment per width and curvature when warp bends"),
        number("bending_weft", &ShellMaterial::bending_weft)
            .unit("N·m")
            .range(sheet_modulus)
+           .varies(&Sheet::variations, shell_forms)
            .otherwise("as warp")
            .shown_if<Sheet>([](const Sheet& m) { return !m.bending_weft_curve; })
            .means("moment per width and curvature when weft bends"),
        number("bending_bias", &ShellMaterial::bending_bias)
            .unit("N·m")
            .range(sheet_modulus)
+           .varies(&Sheet::variations, shell_forms)
            .otherwise("between the two")
            .means("moment per width and curvature for bending at 45°; at least (warp + weft + 2 ν √(warp "
                   "weft))/4, where the sheet no longer resists twisting"),
@@ -215,19 +239,23 @@ schema::Table declared() {
            .means("change of curvature over which internal friction builds up"),
        number("stretch_limit", &ShellMaterial::stretch_limit)
            .range({least_stretch_limit, 10, false})
+           .varies(&Sheet::variations, shell_forms)
            .means("largest stretch in any direction, as length over rest length, unless the body has a "
                   "`stretch_limit` of its own"),
        number("mass_damping", &ShellMaterial::mass_damping)
            .unit("1/s")
            .range(sheet_damping)
+           .varies(&Sheet::variations, shell_forms)
            .means("Rayleigh's α: slows all motion"),
        number("stiffness_damping", &ShellMaterial::stiffness_damping)
            .unit("s")
            .range(sheet_damping)
+           .varies(&Sheet::variations, shell_forms)
            .means("Rayleigh's β of stretch and shear"),
        number("bending_damping", &ShellMaterial::bending_damping)
            .unit("s")
            .range(sheet_damping)
+           .varies(&Sheet::variations, shell_forms)
            .otherwise("`stiffness_damping`")
            .means("Rayleigh's β of bending")});
   table.complete = [](const TomlTable& given, void* settings) {
@@ -241,9 +269,19 @@ schema::Table declared() {
 }  // namespace
 
 void derive_anew(const TomlTable& given, const ShellMaterial& base, ShellMaterial& material) {
-  for (const DerivedNumber& number : derived_numbers)
-    if (!given.has(number.key) && !given.has(number.curve) && base.*number.value == number.derive(base))
-      material.*number.value = number.derive(material);
+  derive_anew(base, material,
+              [&](const DerivedNumber& number) { return given.has(number.key) || given.has(number.curve); });
+}
+
+ShellMaterial with_numbers(const ShellMaterial& material, std::span<const double> values) {
+  ShellMaterial result = material;
+  result.variations.clear();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    shell_material_table().set_number(material.variations[i].key, values[i], result);
+  derive_anew(material, result, [&](const DerivedNumber& number) {
+    return schema::find_variation(material.variations, number.key) != nullptr;
+  });
+  return result;
 }
 
 const schema::Table& shell_material_table() {

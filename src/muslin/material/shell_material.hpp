@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
+#include "muslin/schema/variation.hpp"
 
 namespace muslin {
 
@@ -43,6 +44,7 @@ struct ShellMaterial {
   double mass_damping = 0;                          ///< Rayleigh α [1/s]
   double stiffness_damping = 0;                     ///< Rayleigh β of stretch and shear [s]
   double bending_damping = 0;                       ///< Rayleigh β of bending [s]
+  schema::Variations variations;                    ///< of those numbers above that vary
 };
 
 /// The table [shell] of a material file. Required, unless there is a `base` beside them, are areal_density,

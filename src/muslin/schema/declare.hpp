@@ -25,6 +25,8 @@
 #include "muslin/schema/key.hpp"
 #include "muslin/schema/table.hpp"
 #include "muslin/schema/value.hpp"
+#include "muslin/schema/variation.hpp"
+#include "muslin/schema/variation_table.hpp"
 
 namespace muslin::schema {
 
@@ -55,6 +57,33 @@ class Declaration {
   }
   Declaration& excludes(std::string other, std::string problem, std::string remedy = "keep one of them") {
     key_.conflicts.push_back({std::move(other), std::move(problem), std::move(remedy)});
+    return *this;
+  }
+  /// Lets a number vary in these forms; `list` holds the variation, the key's member then the nominal value.
+  template <class S>
+  Declaration& varies(Variations S::* list, VaryingForms forms) {
+    if (!forms.any()) return *this;
+    key_.forms = forms;
+    key_.types.push_back(Type::table);
+    key_.table = variation_table;
+    key_.read = [list, number = key_](const Key& key, const TomlTable& table, void* s) {
+      Variations& variations = static_cast<S*>(s)->*list;
+      forget_variation(variations, key.name);
+      if (table.find(key.name)->type != TomlValue::Type::table) return number.read(key, table, s);
+      Variation variation = read_variation(key, table);
+      number.set(variation.nominal(), s);
+      variations.push_back(std::move(variation));
+    };
+    key_.write = [list, number = key_](const Key& key, const void* s, TomlValue& out) {
+      const Variation* variation = find_variation(static_cast<const S*>(s)->*list, key.name);
+      if (variation == nullptr) return number.write(key, s, out);
+      append(out, key.name, variation_table().write(*variation));
+    };
+    key_.check = [list, number = key_](const Key& key, const void* s, const Subject& subject) {
+      number.check(key, s, subject);
+      const Variation* variation = find_variation(static_cast<const S*>(s)->*list, key.name);
+      if (variation != nullptr) check_variation(key, *variation, subject);
+    };
     return *this;
   }
   /// Shows the key in the resolved scene only where the predicate holds.
@@ -134,7 +163,9 @@ Declaration stored(std::string name, T S::* member, Codec codec) {
 
 template <class S, class T>
 Declaration number(std::string name, T S::* member) {
-  return stored(std::move(name), member, NumberCodec{});
+  Key key = stored(std::move(name), member, NumberCodec{});
+  key.set = [member](double x, void* s) { static_cast<S*>(s)->*member = x; };
+  return Declaration(std::move(key));
 }
 /// Without an upper bound of the range, any 64-bit integer is allowed.
 template <class S, class T>
@@ -328,6 +359,11 @@ Key within(Find find, Key key) {
   if (key.check) {
     key.check = [inner, check = key.check](const Key& k, const void* s, const Subject& subject) {
       check(k, inner(s), subject);
+    };
+  }
+  if (key.set) {
+    key.set = [find, set = key.set](double x, void* s) {
+      set(x, &std::invoke(find, *static_cast<Outer*>(s)));
     };
   }
   if (key.given) key.given = [inner, given = key.given](const void* s) { return given(inner(s)); };

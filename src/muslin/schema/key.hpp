@@ -30,6 +30,13 @@ enum class Type {
   tables,  ///< a list of tables
 };
 
+/// Forms beside a number in which a key may be given (schema/variation.hpp).
+struct VaryingForms {
+  bool map = false, keyframes = false;
+
+  bool any() const { return map || keyframes; }
+};
+
 struct Key {
   std::string name;
   std::vector<Type> types;           ///< the value is one of these
@@ -44,6 +51,7 @@ struct Key {
   std::string missing;              ///< remedy if a required key is missing; empty: by the type
   bool may_change_on_resume = false;
   const Table& (*table)() = nullptr;  ///< the keys of a table, or of each table of a list
+  VaryingForms forms;                 ///< of a number: in which it may vary
 
   struct Need {
     std::string other, remedy;
@@ -61,6 +69,7 @@ struct Key {
   std::function<void(const Key&, const void*, TomlValue&)> write;
   /// Throws Error(input) if the settings hold a value that reading would refuse.
   std::function<void(const Key&, const void*, const Subject&)> check;
+  std::function<void(double, void*)> set;  ///< stores a number; null: the value is no number
   std::function<bool(const void*)> given;  ///< true if there is a value; null: always
   std::function<bool(const void*)> shown;  ///< true if the resolved scene has the key; null: always
 };

@@ -44,6 +44,12 @@ std::string key_cell(const Key& key) {
   return fmt::format("`{}`{}", bracketed ? key.table().name : key.name, key.may_change_on_resume ? " ↻" : "");
 }
 
+std::string meaning_cell(const Key& key) {
+  if (!key.forms.any()) return key.meaning;
+  const char* forms = !key.forms.keyframes ? "a map" : key.forms.map ? "a map or keyframes" : "keyframes";
+  return fmt::format("{}; may be [{}](maps.md)", key.meaning, forms);
+}
+
 struct Row {
   std::string key, unit, range, fallback, meaning;
   std::vector<std::string> words;  ///< of the variants that have it
@@ -67,7 +73,7 @@ std::vector<Row> rows_of(const Table& table) {
                      key->unit,
                      range_cell(*key),
                      default_cell(table, *key),
-                     key->meaning,
+                     meaning_cell(*key),
                      {shape.word()}});
       const auto at = place_of(own.back());
       if (at == rows.end()) continue;

@@ -62,6 +62,13 @@ struct Table {
     return write_erased(&settings);
   }
 
+  /// Stores a number under its key, which is one of the table's numbers.
+  template <class Settings>
+  void set_number(std::string_view key, double x, Settings& settings) const {
+    assert(type == nullptr || *type == typeid(Settings));
+    find(key)->set(x, &settings);
+  }
+
   /// Returns the names of all keys, those of all variants included.
   std::vector<std::string> names() const;
   /// Returns the keys that apply if this variant is chosen, in their order.
