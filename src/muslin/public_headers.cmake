@@ -26,6 +26,7 @@ set(MUSLIN_PUBLIC_HEADERS
     contact/contact_surface.hpp
     contact/surface_map.hpp
     core/error.hpp
+    core/keyframes.hpp
     core/output_file.hpp
     core/parallel.hpp
     core/progress.hpp

@@ -1,6 +1,7 @@
-// Keyed values interpolate linearly and stay constant outside; windows give exact impulses.
+// Keyed values interpolate between keys and stay constant outside; windows give exact impulses.
 #include "muslin/force/keyed.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -22,13 +23,43 @@ TEST(Keyed, LinearBetweenKeysConstantOutside) {
   EXPECT_EQ(keyed.at(9), Vec3(4, 8, 0));
 }
 
+TEST(Keyed, StepHoldsItsValueUntilTheNextKeyIsReached) {
+  const Keyed keyed{{{1, Vec3(1, 0, 0), Interpolation::step}, {2, Vec3(4, 0, 0)}, {3, Vec3(6, 0, 0)}}};
+  EXPECT_EQ(keyed.at(1.999), Vec3(1, 0, 0));
+  EXPECT_EQ(keyed.at(2), Vec3(4, 0, 0));
+  EXPECT_EQ(keyed.at(2 - 1e-12), Vec3(4, 0, 0)) << "rounding of the clock delays no key";
+  EXPECT_EQ(keyed.at(2.5), Vec3(5, 0, 0));
+}
+
+TEST(Keyed, SmoothHasARateWithoutJumpsAndNeverOvershoots) {
+  const Keyed keyed{{{0, Vec3(1, 0, 0), Interpolation::smooth},
+                     {1, Vec3(3, 0, 0), Interpolation::smooth},
+                     {3, Vec3(-2, 0, 0), Interpolation::smooth}}};
+  EXPECT_EQ(keyed.at(0.5), Vec3(2, 0, 0));
+  const double h = 1e-4;
+  double before = 0;
+  for (double t = -0.2; t < 3.2; t += h) {
+    const double value = keyed.at(t).x(), rate = (keyed.at(t + h).x() - value) / h;
+    EXPECT_GE(value, t < 1 ? 1 : -2) << t;
+    EXPECT_LE(value, 3) << t;
+    EXPECT_LT(std::abs(rate - before), 13 * h) << t << ": the second derivative is 12 at most";
+    before = rate;
+  }
+}
+
 TEST(Keyed, IntegralIsTheSumOfFineMidpoints) {
-  const Keyed keyed{{{-1, Vec3(2, 0, 0)}, {1, Vec3(4, 0, 1)}, {2.5, Vec3(-3, 8, 0)}}};
-  for (double end : {0.0, 0.4, 1.0, 2.0, 2.5, 4.0}) {
-    Vec3 sum = Vec3::Zero();
-    const int n = 4000;
-    for (int i = 0; i < n; ++i) sum += end / n * keyed.at((i + 0.5) * end / n);
-    EXPECT_LT((keyed.integral(end) - sum).norm(), 1e-5) << end;
+  for (const Interpolation way : {Interpolation::linear, Interpolation::step, Interpolation::smooth}) {
+    const Keyed keyed{{{-1, Vec3(2, 0, 0), way}, {1, Vec3(4, 0, 1), way}, {2.5, Vec3(-3, 8, 0)}}};
+    KeyedNumber number;
+    for (const Keyed::Key& key : keyed.keys)
+      number.keys.push_back({key.time, key.value[0], key.interpolation});
+    for (double end : {0.0, 0.4, 1.0, 2.0, 2.5, 4.0}) {
+      Vec3 sum = Vec3::Zero();
+      const int n = 4000;
+      for (int i = 0; i < n; ++i) sum += end / n * keyed.at((i + 0.5) * end / n);
+      EXPECT_LT((keyed.integral(end) - sum).norm(), 1e-5) << end;
+      EXPECT_EQ(number.integral(end), keyed.integral(end)[0]);
+    }
   }
 }
 

@@ -237,6 +237,30 @@ TEST(Wind, ActsOnlyInItsWindowAndFollowsItsKeys) {
   EXPECT_EQ(at(1, 1.25), 0);
 }
 
+TEST(Wind, DragDensityAndGustsFollowTheirKeys) {
+  const auto over_time = [](double first, double last) {
+    KeyedNumber number;
+    number.keys = {{0, first, Interpolation::smooth}, {2, last}};
+    return number;
+  };
+  const auto at_half = [](const WindSettings& settings) {
+    Moving body = resting(plate(0));
+    body.time = 0.75;
+    return force(settings, body, plate_triangles, 0.25);
+  };
+  WindSettings keyed = blowing(Vec3(1, 6, 0)), constant = keyed;
+  keyed.drag = over_time(1, 3), constant.drag = 2;
+  keyed.lift = over_time(0.5, 1), constant.lift = 0.75;
+  keyed.air_density = over_time(0, 2), constant.air_density = 1;
+  EXPECT_LT((at_half(keyed) - at_half(constant)).norm(), 1e-13 * at_half(constant).norm());
+  // Eddies turn over by the integral of their speed.
+  keyed.gust = over_time(2, 0), constant.gust = 1;
+  KeyedNumber& gust = constant.gust;
+  gust.keys = {{0, keyed.gust.integral(1), Interpolation::step}, {1, 1}};
+  EXPECT_NEAR(gust.integral(1), keyed.gust.integral(1), 1e-15);
+  EXPECT_LT((at_half(keyed) - at_half(constant)).norm(), 1e-12 * at_half(constant).norm());
+}
+
 TEST(Wind, DegenerateFacesAndStillAirExertNoForce) {
   EXPECT_EQ(force(blowing(Vec3(0, 7, 0)), resting(plate(0)), {Vec3i(0, 1, 1), Vec3i(2, 2, 2)}), Vec3::Zero());
   EXPECT_EQ(force(blowing(Vec3::Zero()), resting(plate(0)), plate_triangles), Vec3::Zero());

@@ -211,6 +211,19 @@ TEST(Scene, StepsAreANumberOrAutomatic) {
   EXPECT_EQ(nlohmann::json::parse(ten.resolved)["time"]["steps_per_frame"], 10);
 }
 
+TEST(Scene, EffortChangesAtItsKeyframes) {
+  const Scene scene = parse(
+      "[solver]\neffort = { keyframes = [{ time = 0, value = 'draft' }, { time = 1, value = 'exact' }] }\n" +
+      flag_body);
+  EXPECT_EQ(scene.solver.effort_at(0), Effort::draft);
+  EXPECT_EQ(scene.solver.effort_at(0.99), Effort::draft);
+  EXPECT_EQ(scene.solver.effort_at(1), Effort::exact);
+  EXPECT_EQ(scene.solver.at(5).error_tolerance(), 1e-3);
+  const auto json = nlohmann::json::parse(scene.resolved);
+  EXPECT_EQ(json["solver"]["effort"]["keyframes"][1]["value"], "exact");
+  EXPECT_FALSE(json["solver"].contains("tolerance")) << "it would be that of one effort";
+}
+
 TEST(Scene, EveryEffortHasItsTolerance) {
   for (const auto& [name, tolerance] : {std::pair{"draft", 1.0}, {"normal", 0.2}, {"exact", 1e-3}})
     EXPECT_EQ(parse(std::string("[solver]\neffort = '") + name + "'\n" + flag_body).solver.error_tolerance(),
@@ -274,6 +287,23 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[time]\nsteps_per_frame = 0\n" + flag_body, "write \"auto\" or a whole number from 1"},
         Wrong{"[time]\nsteps_per_frame = 'many'\n" + flag_body, "write \"auto\" or a whole number from 1"},
         Wrong{"[solver]\neffort = 'exat'\n" + flag_body, "did you mean `exact`?"},
+        Wrong{"[solver]\neffort = { keyframes = [{ time = 0, value = 'exat' }] }\n" + flag_body,
+              "did you mean `exact`?"},
+        Wrong{"[solver]\neffort = { keyframes = [{ time = 1, value = 'draft' }, { time = 0, value = "
+              "'exact' }] }\n" +
+                  flag_body,
+              "does not come after"},
+        Wrong{flag_body + "[[force]]\ntype = 'wind'\nvelocity = [1, 0, 0]\ngust = { keyframes = [{ time = 0, "
+                          "value = -1 }] }\n",
+              "`gust` is -1 at 0 s"},
+        Wrong{flag_body + "[[force]]\ntype = 'wind'\nvelocity = [1, 0, 0]\nlift = { keyframes = [{ time = 0, "
+                          "value = 1 }, { time = 2, value = 1.5 }] }\n",
+              "`lift` = 1.5 is above `drag` = 1.17 at 2 s"},
+        Wrong{flag_body + "[[force]]\ntype = 'gravity'\nkeyframes = [{ time = 0, value = [0, 0, 0], "
+                          "interpolation = 'smoth' }]\n",
+              "did you mean `smooth`?"},
+        Wrong{flag_body + "[[force]]\ntype = 'gravity'\nkeyframes = [{ time = nan, value = [0, 0, 0] }]\n",
+              "time"},
         Wrong{"[solver]\nmax_iterations = 9\n" + flag_body, "unknown key `max_iterations`"},
         Wrong{"[solver]\ntolerance = 2\n" + flag_body, "give a number above 0 to 1"},
         Wrong{"[solver]\nintegrator = 'implicit'\n" + flag_body, "did you mean `implicit_euler`?"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "muslin/component/placement.hpp"
+#include "muslin/schema/interpolation_key.hpp"
 
 namespace muslin {
 namespace {
@@ -47,7 +48,8 @@ const schema::Table& motion_keyframe_table() {
            .means("rotation about `pivot`: about the x axis, then y, then z"),
        scale_of(&Motion::Key::scale)
            .shown_if<Motion::Key>([](const Motion::Key& key) { return key.scale != Vec3::Ones(); })
-           .means("of pins: scale about `pivot`, a number or one per axis; applied first")});
+           .means("of pins: scale about `pivot`, a number or one per axis; applied first"),
+       schema::interpolation_key<Motion::Key>()});
   return table;
 }
 

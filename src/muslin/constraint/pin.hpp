@@ -9,19 +9,22 @@
 
 #include "muslin/api.hpp"
 #include "muslin/constraint/acting.hpp"
+#include "muslin/core/keyframes.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/point_sequence.hpp"
 
 namespace muslin {
 
-/// A motion given by keyframes: linear in translation and scale, spherical-linear in rotation between them,
-/// constant before the first and after the last. No keyframes: the identity.
+/// A motion given by keyframes: between them translation and scale go along a line and the rotation along an
+/// arc, at a rate that the interpolation sets. Constant before the first and after the last. No keyframes:
+/// the identity.
 struct MUSLIN_API Motion {
   struct Key {
     double time = 0;                ///< [s]
     Vec3 translate = Vec3::Zero();  ///< [m]
     Eigen::Quaterniond rotate = Eigen::Quaterniond::Identity();
     Vec3 scale = Vec3::Ones();  ///< along the axes before the rotation, > 0; of pins only
+    Interpolation interpolation = Interpolation::linear;  ///< to the next key
   };
   std::vector<Key> keys;      ///< times ascend strictly
   Vec3 pivot = Vec3::Zero();  ///< rotation and scale leave this point where it is [m]

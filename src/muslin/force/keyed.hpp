@@ -4,15 +4,18 @@
 #include <vector>
 
 #include "muslin/api.hpp"
+#include "muslin/core/keyframes.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
 
-/// Constant, or keyframed: linear between the keys, constant before the first and after the last.
+/// A vector, constant or keyframed: interpolated between the keys, constant before the first and after the
+/// last.
 struct MUSLIN_API Keyed {
   struct Key {
     double time = 0;  ///< [s]
     Vec3 value = Vec3::Zero();
+    Interpolation interpolation = Interpolation::linear;  ///< to the next key
   };
   std::vector<Key> keys;  ///< at least one, times ascend strictly
 
@@ -21,16 +24,22 @@ struct MUSLIN_API Keyed {
   Vec3 integral(double time) const;
 };
 
-/// A keyframed number.
+/// A number, likewise.
 struct MUSLIN_API KeyedNumber {
+  KeyedNumber() = default;
+  KeyedNumber(double constant) : keys{{0, constant}} {}  // NOLINT(google-explicit-constructor): is one
   struct Key {
     double time = 0;  ///< [s]
     double value = 0;
+    Interpolation interpolation = Interpolation::linear;  ///< to the next key
+    bool operator==(const Key&) const = default;
   };
   std::vector<Key> keys;  ///< at least one, times ascend strictly
 
   bool is_constant() const { return keys.size() == 1; }
   double at(double time) const;
+  double integral(double time) const;  ///< ∫₀ᵗ at(s) ds for t ≥ 0, exactly
+  bool operator==(const KeyedNumber&) const = default;
 };
 
 /// The time during which a force acts, and its share of a step.
@@ -40,7 +49,8 @@ struct MUSLIN_API Window {
 
   /// Returns the share of the step from `begin` to `end` that lies in the window: 1 inside, 0 outside,
   /// between them in a step that crosses a border. A force scaled by it gives the exact impulse for any
-  /// steps. Shares within 1e-6 of 0 or 1 are due to rounding of the clock and are snapped.
+  /// steps. Shares within 1e-6 of 0 or 1 are due to rounding of the clock and are snapped. A step without
+  /// length is inside or outside.
   double share(double begin, double end) const;
   /// Returns the time at which to read a keyed value for that step: its end, or the end of the window if
   /// earlier.

@@ -92,6 +92,19 @@ void check(bool good, const char* setting, double value, const char* range) {
               "give " + std::string(range));
 }
 
+void check(const KeyedNumber& number, const char* setting, const char* range) {
+  for (const KeyedNumber::Key& key : number.keys)
+    check(std::isfinite(key.value) && key.value >= 0, setting, key.value, range);
+}
+
+void check_lift(const KeyedNumber& lift, const KeyedNumber& drag) {
+  check(lift, "lift", "a lift coefficient from 0 to that of drag");
+  for (const KeyedNumber* number : {&lift, &drag})
+    for (const KeyedNumber::Key& key : number->keys)
+      check(lift.at(key.time) <= drag.at(key.time), "lift", lift.at(key.time),
+            "a lift coefficient from 0 to that of drag");
+}
+
 }  // namespace
 
 struct Wind::Faces {
@@ -167,11 +180,10 @@ class RelativeDrag : public Potential {
 Wind::Wind(WindSettings settings, Embedding skin, std::vector<Vec3i> triangles, std::size_t vertex_count)
     : settings_(std::move(settings)) {
   const WindSettings& s = settings_;
-  check(std::isfinite(s.air_density) && s.air_density >= 0, "air_density", s.air_density,
-        "kg/m3, 0 or more (1.2 near the ground)");
-  check(std::isfinite(s.drag) && s.drag >= 0, "drag", s.drag, "a drag coefficient of 0 or more");
-  check(s.lift >= 0 && s.lift <= s.drag, "lift", s.lift, "a lift coefficient from 0 to that of drag");
-  check(std::isfinite(s.gust) && s.gust >= 0, "gust", s.gust, "m/s, 0 or more");
+  check(s.air_density, "air_density", "kg/m3, 0 or more (1.2 near the ground)");
+  check(s.drag, "drag", "a drag coefficient of 0 or more");
+  check_lift(s.lift, s.drag);
+  check(s.gust, "gust", "m/s, 0 or more");
   check(std::isfinite(s.gust_length) && s.gust_length > 0, "gust_length", s.gust_length, "m, more than 0");
 
   auto faces = std::make_shared<Faces>();
@@ -189,6 +201,9 @@ std::unique_ptr<Potential> Wind::potential(const StepContext& step) const {
   const double time = s.window.sample(step.time_end);
   const Vec3 mean = s.velocity.at(time);
   const Vec3 carried = s.velocity.integral(time);
+  const double density = s.air_density.at(time), drag = s.drag.at(time), gust = s.gust.at(time);
+  const double lift = std::min(s.lift.at(time), drag);
+  const double turned = s.gust.integral(time) / s.gust_length;  // eddy turnover times
 
   std::vector<Vec3> points(faces_->skin.size());
   faces_->skin.apply(step.positions, points);
@@ -204,9 +219,9 @@ std::unique_ptr<Potential> Wind::potential(const StepContext& step) const {
       if (twice_area == 0) continue;
 
       Vec3 air = mean;
-      if (s.gust > 0) {
+      if (gust > 0) {
         const Vec3 place = ((a + b + c) / 3 - carried) / s.gust_length;
-        air += s.gust * gust_noise(place, time * s.gust / s.gust_length, s.seed);
+        air += gust * gust_noise(place, turned, s.seed);
       }
       FaceDrag& face = drags[t];
       face.normal = cross / twice_area;
@@ -217,9 +232,9 @@ std::unique_ptr<Potential> Wind::potential(const StepContext& step) const {
       const double through = face.normal.dot(relative);
       if (speed == 0 || (!s.two_sided && through >= 0)) continue;
       const double normal_speed = std::min(std::abs(through), speed);
-      const double factor = 0.25 * share * s.air_density * twice_area;  // ½ ρ A
-      face.along = factor * normal_speed * (s.drag - s.lift * normal_speed / speed);
-      face.across = factor * s.lift * speed;
+      const double factor = 0.25 * share * density * twice_area;  // ½ ρ A
+      face.along = factor * normal_speed * (drag - lift * normal_speed / speed);
+      face.across = factor * lift * speed;
     }
   });
   return std::make_unique<RelativeDrag>(faces_, std::move(drags), step.dt);

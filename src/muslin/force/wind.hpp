@@ -26,13 +26,15 @@ namespace muslin {
 struct WindSettings {
   Keyed velocity{{{0, Vec3::Zero()}}};  ///< mean velocity of the air [m/s]
   Window window;                        ///< when it acts; outside there is no air resistance
-  double air_density = 1.2;             ///< ρ [kg/m³] ≥ 0
-  double drag = 1.17;                   ///< C_D ≥ 0; 1.17: a square plate, broadside
-  double lift = 0;                      ///< C_L, 0 … C_D: more would pull a face against the wind
+  KeyedNumber air_density = 1.2;        ///< ρ [kg/m³] ≥ 0
+  KeyedNumber drag = 1.17;              ///< C_D ≥ 0; 1.17: a square plate, broadside
+  /// C_L, 0 … C_D at every key of the two, as more would pull a face against the wind; between keys C_D where
+  /// it would exceed that.
+  KeyedNumber lift = 0;
   /// true: an open sheet, each face counts, whichever side faces the wind. false: a closed solid with outward
   /// faces; only those that face the wind count, and C_D refers to the frontal area as in handbooks.
   bool two_sided = true;
-  double gust = 0;         ///< root mean square of each component of the turbulence [m/s] ≥ 0
+  KeyedNumber gust = 0;    ///< root mean square of each component of the turbulence [m/s] ≥ 0
   double gust_length = 1;  ///< size of its largest eddies [m] > 0
   std::uint64_t seed = 1;  ///< decides the turbulence
 };

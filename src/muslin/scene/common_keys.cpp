@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "muslin/core/nearest_name.hpp"
+#include "muslin/schema/interpolation_key.hpp"
 
 namespace muslin {
 
@@ -21,14 +22,15 @@ const schema::Table& keyed_number_table() {
                .unit("s")
                .required()
                .means("time of the keyframe, later than the previous one"),
-           schema::number("value", &KeyedNumber::Key::value).required().means("the number at that time")});
+           schema::number("value", &KeyedNumber::Key::value).required().means("the number at that time"),
+           schema::interpolation_key<KeyedNumber::Key>()});
       return keyframe;
     };
     return schema::table_of<KeyedNumber>(
         "a number over time",
         {schema::keyframes("keyframes", &KeyedNumber::keys, +keyframe_table)
              .required()
-             .means("a list of tables, linear between them, constant before the first and after the last")});
+             .means("a list of tables; times ascend; constant before the first and after the last")});
   }();
   return table;
 }

@@ -25,7 +25,7 @@ std::vector<schema::Key> window_keys(double S::* from, double S::* until, const 
 /// Throws subject.error(…) unless until > from.
 void check_window(double from, double until, const schema::Subject& subject);
 
-/// A number, or `{ keyframes = [{ time, value }, …] }`: a number over time, linear between the keyframes.
+/// A number, or `{ keyframes = [{ time, value, interpolation }, …] }`: a number over time.
 const schema::Table& keyed_number_table();  ///< of KeyedNumber
 void read_keyed_number(const schema::Key& key, const TomlTable& table, KeyedNumber& number);
 void write_keyed_number(const schema::Key& key, const KeyedNumber& number, TomlValue& out);

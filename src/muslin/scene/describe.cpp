@@ -79,8 +79,11 @@ std::string steps_text(const TimeSettings& time) {
 std::string solver_text(const SolverSettings& solver) {
   const std::string& name = name_of(integrator_names(), solver.integrator);
   if (solver.integrator != Integrator::implicit_euler && solver.integrator != Integrator::bdf2) return name;
-  return fmt::format("{}, effort {}, tolerance {:.3g}", name, name_of(effort_names(), solver.effort),
-                     solver.error_tolerance());
+  std::string effort = name_of(effort_names(), solver.effort);
+  for (std::size_t k = 1; k < solver.effort_keys.size(); ++k)
+    effort += fmt::format(", {} from {:.4g} s", name_of(effort_names(), solver.effort_keys[k].value),
+                          solver.effort_keys[k].time);
+  return fmt::format("{}, effort {}, tolerance {:.3g}", name, effort, solver.error_tolerance());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "muslin/scene/force_kind.hpp"
 
 #include "muslin/scene/common_keys.hpp"
+#include "muslin/schema/interpolation_key.hpp"
 
 namespace muslin {
 
@@ -24,7 +25,8 @@ schema::Table force_keyframe_table(const char* kind, const char* key, const char
                                        schema::vector("value", &Keyed::Key::value)
                                            .unit(unit)
                                            .required()
-                                           .means(fmt::format("`{}` at that time", key))});
+                                           .means(fmt::format("`{}` at that time", key)),
+                                       schema::interpolation_key<Keyed::Key>()});
 }
 
 void add_value_keys(schema::Table& table, const ForceValue& value) {
@@ -53,8 +55,7 @@ void add_value_keys(schema::Table& table, const ForceValue& value) {
       schema::keyframes("keyframes", &Keyed::keys, value.keyframes)
           .shown_if<Keyed>([](const Keyed& keyed) { return keyed.keys.size() != 1; })
           .otherwise("none")
-          .means("the value over time in place of a constant: a list of tables, linear "
-                 "between them; times ascend")));
+          .means("the value over time in place of a constant: a list of tables; times ascend")));
   for (Key& key : window_keys(&ForceSettings::from, &ForceSettings::until, "time when it begins to act",
                               "time when it ends, after `from`", "no end"))
     table.keys.push_back(key);

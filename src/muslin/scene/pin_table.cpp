@@ -58,11 +58,10 @@ schema::Table declare_pin() {
           .means("motion, in place of `keyframes`: a file with the position of every vertex of the body's "
                  "mesh per "
                  "frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. Metres, y up, in the world"));
-  table.keys.push_back(schema::within<PinSettings>(
-      &PinSettings::motion,
-      motion_key()
-          .excludes("sequence", both_move("keyframes"))
-          .means("motion: a list of tables; linear between them, rotation at constant speed; times ascend")));
+  table.keys.push_back(schema::within<PinSettings>(&PinSettings::motion,
+                                                   motion_key()
+                                                       .excludes("sequence", both_move("keyframes"))
+                                                       .means("motion: a list of tables; times ascend")));
   schema::add_rule<PinSettings>(table, [](const PinSettings& pin, const schema::Subject& subject) {
     check_window(pin.from, pin.until, subject);
   });

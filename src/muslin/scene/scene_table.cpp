@@ -76,6 +76,58 @@ const schema::Table& time_table() {
   return table;
 }
 
+const schema::Table& effort_over_time_table() {
+  static const schema::Table table = [] {
+    const auto keyframe_table = []() -> const schema::Table& {
+      static const schema::Table keyframe = schema::table_of<SolverSettings::EffortKey>(
+          "keyframes of an effort", {schema::number("time", &SolverSettings::EffortKey::time)
+                                         .unit("s")
+                                         .required()
+                                         .means("time of the keyframe, later than the previous one"),
+                                     schema::word("value", &SolverSettings::EffortKey::value, effort_names())
+                                         .required()
+                                         .means("the effort from that time on")});
+      return keyframe;
+    };
+    return schema::table_of<SolverSettings>(
+        "an effort over time",
+        {schema::keyframes("keyframes", &SolverSettings::effort_keys, +keyframe_table)
+             .required()
+             .means("a list of tables; times ascend; before the first its effort holds")});
+  }();
+  return table;
+}
+
+/// A word, or `{ keyframes = [{ time, value }, …] }`.
+Key effort_key() {
+  Key key = schema::word("effort", &SolverSettings::effort, effort_names())
+                .means(
+                    "how accurately steps are solved: `\"draft\"`, to see whether a scene works · "
+                    "`\"normal\"`, for pictures · `\"exact\"`, for measurements; or, over time, "
+                    "`{ keyframes = [{ time = …, value = … }, …] }`");
+  key.types.push_back(Type::table);
+  key.table = effort_over_time_table;
+  key.read = [word = key.read](const Key& k, const TomlTable& table, void* s) {
+    auto& solver = *static_cast<SolverSettings*>(s);
+    solver.effort_keys.clear();
+    const TomlValue& value = *table.find(k.name);
+    if (value.type != TomlValue::Type::table) return word(k, table, s);
+    effort_over_time_table().read(
+        effort_over_time_table().open(value, fmt::format("`{}` of {}", k.name, table.title())), solver);
+    solver.effort = solver.effort_keys.front().value;
+  };
+  key.write = [word = key.write](const Key& k, const void* s, TomlValue& out) {
+    const auto& solver = *static_cast<const SolverSettings*>(s);
+    if (solver.effort_keys.empty()) return word(k, s, out);
+    schema::append(out, k.name, effort_over_time_table().write(solver));
+  };
+  key.check = [word = key.check](const Key& k, const void* s, const schema::Subject& subject) {
+    word(k, s, subject);
+    effort_over_time_table().check(*static_cast<const SolverSettings*>(s), subject);
+  };
+  return key;
+}
+
 const schema::Table& solver_table() {
   static const schema::Table table = schema::table_of<SolverSettings>(
       "[solver]",
@@ -85,15 +137,15 @@ const schema::Table& solver_table() {
                   "damps little · `\"linearly_implicit_euler\"`: one Newton step · `\"symplectic_euler\"`: "
                   "explicit, "
                   "only stable for small steps"),
-       schema::word("effort", &SolverSettings::effort, effort_names())
-           .means("how accurately steps are solved: `\"draft\"`, to see whether a scene works · "
-                  "`\"normal\"`, for "
-                  "pictures · `\"exact\"`, for measurements"),
+       effort_key(),
        schema::number("tolerance", &SolverSettings::tolerance)
            .range({0, 1, true})
            .otherwise("that of `effort`: 1, 0.2 or 1e-3")
            .shown_as<SolverSettings>(
                [](const SolverSettings& solver) { return schema::real(solver.error_tolerance()); })
+           .shown_if<SolverSettings>([](const SolverSettings& solver) {
+             return solver.tolerance.has_value() || solver.effort_keys.empty();
+           })
            .means(
                "a step has converged when its estimated error, as displacement, is at most this share of the "
                "displacement that the present accelerations cause in a step"),

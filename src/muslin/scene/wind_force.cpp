@@ -11,7 +11,6 @@
 namespace muslin {
 namespace {
 
-using schema::Key;
 using schema::Subject;
 using Own = WindForceSettings;
 
@@ -20,20 +19,17 @@ const schema::Table& keyframes() {
   return table;
 }
 
-Key lift_key() {
-  Key lift =
-      schema::number("lift", &Own::lift).range({0, 1e3, false}).means("lift coefficient, at most `drag`");
-  lift.read = [](const Key& key, const TomlTable& table, void* s) {
-    auto& own = *static_cast<Own*>(s);
-    own.lift = table.number(key.name, key.unit, {0, own.drag, false});
-  };
-  return lift;
-}
-
 void check_lift(const Own& own, const Subject& subject) {
-  if (own.lift > own.drag)
-    throw subject.error("lift", fmt::format("`lift` = {} is above `drag` = {}", own.lift, own.drag),
-                        "lower it, or raise `drag`");
+  for (const KeyedNumber* number : {&own.lift, &own.drag}) {
+    for (const KeyedNumber::Key& key : number->keys) {
+      const double lift = own.lift.at(key.time), drag = own.drag.at(key.time);
+      if (lift <= drag) continue;
+      const std::string when =
+          own.lift.is_constant() && own.drag.is_constant() ? "" : fmt::format(" at {} s", key.time);
+      throw subject.error("lift", fmt::format("`lift` = {} is above `drag` = {}{}", lift, drag, when),
+                          "lower it, or raise `drag`");
+    }
+  }
 }
 
 const schema::Table& keys() {
@@ -43,27 +39,25 @@ const schema::Table& keys() {
     add_value_keys(
         wind,
         {.key = "velocity", .unit = "m/s", .meaning = "mean velocity of the air", .keyframes = keyframes});
-    add_own_keys<Own>(wind,
-                      {schema::number("air_density", &Own::air_density)
-                           .unit("kg/m³")
-                           .range({0, 1e5, false})
-                           .means("density of the air"),
-                       schema::number("drag", &Own::drag)
-                           .range({0, 1e3, false})
-                           .means("drag coefficient; 1.17 is a square plate, broadside"),
-                       lift_key(),
-                       schema::number("gust", &Own::gust)
-                           .unit("m/s")
-                           .range({0, 1e4, false})
-                           .means("root mean square of each component of the turbulence"),
-                       schema::number("gust_length", &Own::gust_length)
-                           .unit("m")
-                           .range({1e-6, 1e6, false})
-                           .means("size of its largest eddies"),
-                       schema::whole_number("seed", &Own::seed)
-                           .range(Range::non_negative())
-                           .means("whole number that seeds the turbulence")},
-                      check_lift);
+    add_own_keys<Own>(
+        wind,
+        {keyed_number_key("air_density", &Own::air_density, {0, 1e5, false})
+             .unit("kg/m³")
+             .means("density of the air"),
+         keyed_number_key("drag", &Own::drag, {0, 1e3, false})
+             .means("drag coefficient; 1.17 is a square plate, broadside"),
+         keyed_number_key("lift", &Own::lift, {0, 1e3, false}).means("lift coefficient, at most `drag`"),
+         keyed_number_key("gust", &Own::gust, {0, 1e4, false})
+             .unit("m/s")
+             .means("root mean square of each component of the turbulence"),
+         schema::number("gust_length", &Own::gust_length)
+             .unit("m")
+             .range({1e-6, 1e6, false})
+             .means("size of its largest eddies"),
+         schema::whole_number("seed", &Own::seed)
+             .range(Range::non_negative())
+             .means("whole number that seeds the turbulence")},
+        check_lift);
     return wind;
   }();
   return table;

@@ -3,13 +3,15 @@
 
 #include <cstdint>
 
+#include "muslin/force/keyed.hpp"
+
 namespace muslin {
 
 struct WindForceSettings {
-  double air_density = 1.2;  ///< [kg/m³]
-  double drag = 1.17;        ///< drag coefficient C_D
-  double lift = 0.0;         ///< lift coefficient C_L ≤ C_D
-  double gust = 0.0;         ///< root mean square of each component of the turbulence [m/s]
+  KeyedNumber air_density = 1.2;  ///< [kg/m³]
+  KeyedNumber drag = 1.17;        ///< drag coefficient C_D
+  KeyedNumber lift = 0.0;         ///< lift coefficient C_L ≤ C_D
+  KeyedNumber gust = 0.0;         ///< root mean square of each component of the turbulence [m/s]
   double gust_length = 1.0;  ///< size of its largest eddies [m]
   std::int64_t seed = 1;     ///< decides the turbulence
 };

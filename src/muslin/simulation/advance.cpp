@@ -29,8 +29,8 @@ class Advance {
   StepReport by(double length, int halvings = 0) {
     const State before = state_.motion;
     const ContactMemory contact = state_.contact;
-    const SolverSettings& settings = model_.scene.solver;
-    StepContext context = step_context(settings.integrator, before, length);
+    StepContext context = step_context(model_.scene.solver.integrator, before, length);
+    const SolverSettings settings = model_.scene.solver.at(context.time_end);
     const auto loads = terms_.potentials_of_loads(context);
     Holds next = hold(context, before);
     predict(settings.integrator, before, context);

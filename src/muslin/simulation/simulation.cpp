@@ -69,7 +69,7 @@ int Simulation::Impl::choose_level() {
   const std::vector<double> accelerations = driving_accelerations(
       *model, terms(), terms().potentials_of_loads(context), state.motion.positions, scratch);
   return state.control.choose(scratch.parts, accelerations, scratch.masses, state.motion,
-                              1 / time().frame_rate, model->scene.solver.effort);
+                              1 / time().frame_rate, model->scene.solver.effort_at(state.motion.time));
 }
 
 void Simulation::Impl::require_untangled(const std::vector<Vec3>& positions) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "muslin/api.hpp"
+#include "muslin/core/keyframes.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/potential/potential.hpp"
 #include "muslin/potential/state.hpp"
@@ -32,14 +33,29 @@ enum class Effort {
 };
 
 struct SolverSettings {
+  /// An effort from a time on [s].
+  struct EffortKey {
+    double time = 0;
+    Effort value = Effort::normal;
+  };
   Integrator integrator = Integrator::implicit_euler;
   Effort effort = Effort::normal;
+  std::vector<EffortKey> effort_keys;  ///< of an effort that changes, the first being `effort`; times ascend
   /// A step has converged when its error estimate, a displacement, is at most this share of the displacement
   /// that the acting accelerations cause in a step (error ≤ tolerance · a · dt² in every part) and at most
   /// this share of an edge. None: the tolerance of `effort`.
   std::optional<double> tolerance;
   double linear_tolerance = 1e-6;  ///< relative residual of the one linear solve of linearly_implicit_euler
 
+  Effort effort_at(double time) const {
+    return effort_keys.empty() ? effort : keyframes_around(effort_keys, time).from.value;
+  }
+  /// Returns the settings of a step that ends at `time` [s].
+  SolverSettings at(double time) const {
+    SolverSettings settings = *this;
+    settings.effort = effort_at(time);
+    return settings;
+  }
   double error_tolerance() const {
     if (tolerance) return *tolerance;
     return effort == Effort::draft ? 1 : effort == Effort::normal ? 0.2 : 1e-3;

@@ -150,9 +150,7 @@ schema::Table declare_collider() {
            motion_key()
                .excludes("sequence", "`keyframes` stands beside `sequence`, which says how it moves")
                .may_change_on_resume()
-               .means("motion relative to its initial position: a list of tables; linear between them, "
-                      "rotation at "
-                      "constant speed; times ascend")),
+               .means("motion relative to its initial position: a list of tables; times ascend")),
        schema::truth("contact", &Collider::contact)
            .means("`false` excludes it from contact; it is only drawn"),
        friction_key(&Collider::friction),
