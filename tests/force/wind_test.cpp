@@ -10,6 +10,8 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/force/gusts.hpp"
+#include "muslin/force/simple_patterns.hpp"
+#include "muslin/force/turbulence.hpp"
 
 namespace muslin {
 namespace {
@@ -282,6 +284,7 @@ TEST(Wind, RejectsSettingsOutOfRange) {
   EXPECT_NE(message([](WindSettings& s) { s.lift = 2; }).find("lift"), std::string::npos);
   EXPECT_NE(message([](WindSettings& s) { s.drag = -1; }).find("drag"), std::string::npos);
   EXPECT_NE(message([=](WindSettings& s) { s.air_density = nan; }).find("air_density"), std::string::npos);
+  EXPECT_NE(message([](WindSettings& s) { s.porosity = 1.5; }).find("porosity"), std::string::npos);
   EXPECT_NE(message([](WindSettings& s) { s.gust = -1; }).find("gust"), std::string::npos);
   EXPECT_NE(message([](WindSettings& s) { s.gust_length = 0; }).find("gust_length"), std::string::npos);
 }
@@ -333,6 +336,58 @@ TEST(Gusts, AreCarriedByTheMeanWind) {
       force(settings, there, plate_triangles) - force(blowing(Vec3(0, 10, 0)), there, plate_triangles);
   EXPECT_GT(a.norm(), 1e-3);
   EXPECT_LT((a - b).norm(), 0.2 * a.norm());
+}
+
+TEST(Gusts, TravelUnchangedInAFrozenField) {
+  // u(x, t) = u(x − U t, 0): a plate that has moved by U t meets the same air.
+  WindSettings settings = blowing(Vec3(0, 8, 0));
+  Field gusts;
+  gusts.extent.window = always;
+  gusts.extent.travel = Vec3(0, 8, 0);
+  gusts.pattern = std::make_shared<Turbulence>(Turbulence::Settings{});
+  settings.fields = {gusts};
+  Moving here = resting(plate(0.3));
+  Moving there = here;
+  there.time = 2;
+  for (Vec3& p : there.x) p.y() += 16;
+  const Vec3 a = force(settings, here, plate_triangles), b = force(settings, there, plate_triangles);
+  EXPECT_LT((a - b).norm(), 1e-10 * a.norm());
+  EXPECT_GT((a - force(blowing(Vec3(0, 8, 0)), here, plate_triangles)).norm(), 1e-2);
+}
+
+TEST(Wind, FieldsAddToItsAir) {
+  Field breeze;
+  breeze.extent.window = always;
+  breeze.extent.strength = KeyedNumber{{{0, 3}}};
+  breeze.pattern = std::make_shared<UniformPattern>(Vec3::UnitX());
+  Field counter = breeze;
+  counter.extent.strength = KeyedNumber{{{0, -1}}};
+  WindSettings settings = blowing(Vec3(0, 7, 0));
+  settings.lift = 0.5;
+  settings.fields = {breeze, counter};
+  WindSettings sum = blowing(Vec3(2, 7, 0));
+  sum.lift = 0.5;
+  const Moving body = resting(plate(0.4));
+  EXPECT_LT((force(settings, body, plate_triangles) - force(sum, body, plate_triangles)).norm(), 1e-12);
+  settings.fields.front().extent.window = {10, 20};
+  settings.fields.pop_back();
+  const WindSettings calm = [&] {
+    WindSettings s = settings;
+    s.fields.clear();
+    return s;
+  }();
+  EXPECT_EQ(force(settings, body, plate_triangles), force(calm, body, plate_triangles));
+}
+
+TEST(Wind, PorousSheetTakesTheForceOfItsSolidShare) {
+  WindSettings settings = blowing(Vec3(1, 7, 2));
+  settings.lift = 0.6;
+  const Moving body = resting(plate(0.4));
+  const Vec3 solid = force(settings, body, plate_triangles);
+  settings.porosity = 0.3;
+  EXPECT_LT((force(settings, body, plate_triangles) - 0.7 * solid).norm(), 1e-12);
+  settings.porosity = 1;
+  EXPECT_EQ(force(settings, body, plate_triangles), Vec3::Zero());
 }
 
 }  // namespace

@@ -3,17 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "muslin/force/split_mix.hpp"
+
 namespace muslin {
 
 namespace {
-
-/// Steele, Lea, Flood 2014 (SplitMix64): a bijection whose output bits are well mixed.
-std::uint64_t mix(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
 
 /// Three numbers in [−1, 1) from 21 bits each.
 Vec3 unpack(std::uint64_t bits) {
@@ -39,13 +33,13 @@ Vec3 octave(const Eigen::Vector4d& p, std::uint64_t seed) {
   }
   Vec3 result = Vec3::Zero();
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::uint64_t hi = mix(seed ^ cell[0][i]);
+    const std::uint64_t hi = split_mix(seed ^ cell[0][i]);
     for (std::size_t j = 0; j < 2; ++j) {
-      const std::uint64_t hj = mix(hi ^ cell[1][j]);
+      const std::uint64_t hj = split_mix(hi ^ cell[1][j]);
       for (std::size_t k = 0; k < 2; ++k) {
-        const std::uint64_t hk = mix(hj ^ cell[2][k]);
+        const std::uint64_t hk = split_mix(hj ^ cell[2][k]);
         const double w = weight[0][i] * weight[1][j] * weight[2][k];
-        for (std::size_t l = 0; l < 2; ++l) result += w * weight[3][l] * unpack(mix(hk ^ cell[3][l]));
+        for (std::size_t l = 0; l < 2; ++l) result += w * weight[3][l] * unpack(split_mix(hk ^ cell[3][l]));
       }
     }
   }
@@ -61,7 +55,7 @@ Vec3 gust_noise(const Vec3& place, double time, std::uint64_t seed) {
   constexpr double kept = 181.0 / 231.0;
   static const double scale = 1 / std::sqrt((1 + 0.25) / 3 * kept * kept * kept * kept);
   const Eigen::Vector4d p(place.x(), place.y(), place.z(), time);
-  return scale * (octave(p, mix(seed)) + 0.5 * octave(2 * p, mix(mix(seed))));
+  return scale * (octave(p, split_mix(seed)) + 0.5 * octave(2 * p, split_mix(split_mix(seed))));
 }
 
 }  // namespace muslin

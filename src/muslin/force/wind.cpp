@@ -185,6 +185,7 @@ Wind::Wind(WindSettings settings, Embedding skin, std::vector<Vec3i> triangles, 
   check_lift(s.lift, s.drag);
   check(s.gust, "gust", "m/s, 0 or more");
   check(std::isfinite(s.gust_length) && s.gust_length > 0, "gust_length", s.gust_length, "m, more than 0");
+  check(s.porosity >= 0 && s.porosity <= 1, "porosity", s.porosity, "a share from 0 to 1");
 
   auto faces = std::make_shared<Faces>();
   faces->centroids = centroid_rows(skin, triangles);
@@ -204,6 +205,9 @@ std::unique_ptr<Potential> Wind::potential(const StepContext& step) const {
   const double density = s.air_density.at(time), drag = s.drag.at(time), gust = s.gust.at(time);
   const double lift = std::min(s.lift.at(time), drag);
   const double turned = s.gust.integral(time) / s.gust_length;  // eddy turnover times
+  std::vector<double> strengths;
+  for (const Field& field : s.fields)
+    strengths.push_back(field.extent.strength_in(step.time_begin, step.time_end));
 
   std::vector<Vec3> points(faces_->skin.size());
   faces_->skin.apply(step.positions, points);
@@ -223,6 +227,10 @@ std::unique_ptr<Potential> Wind::potential(const StepContext& step) const {
         const Vec3 place = ((a + b + c) / 3 - carried) / s.gust_length;
         air += gust * gust_noise(place, turned, s.seed);
       }
+      for (std::size_t f = 0; f < strengths.size(); ++f) {
+        if (strengths[f] == 0) continue;
+        air += strengths[f] * s.fields[f].at((a + b + c) / 3, s.fields[f].extent.sampled(step.time_end));
+      }
       FaceDrag& face = drags[t];
       face.normal = cross / twice_area;
       face.target = faces_->centroids.apply(t, step.anchor.data()) + step.dt * air;
@@ -232,7 +240,7 @@ std::unique_ptr<Potential> Wind::potential(const StepContext& step) const {
       const double through = face.normal.dot(relative);
       if (speed == 0 || (!s.two_sided && through >= 0)) continue;
       const double normal_speed = std::min(std::abs(through), speed);
-      const double factor = 0.25 * share * density * twice_area;  // ½ ρ A
+      const double factor = 0.25 * share * density * twice_area * (1 - s.porosity);  // ½ ρ A
       face.along = factor * normal_speed * (drag - lift * normal_speed / speed);
       face.across = factor * lift * speed;
     }

@@ -6,7 +6,8 @@
 //   lift  ½ C_L ρ v² A (n·v̂) (n − (n·v̂) v̂)  across it, in the plane of v and n
 //
 // n enters twice, so its sign does not matter. The lift direction is left unnormalised: the lift of a plate
-// is proportional to sin α cos α and vanishes at normal incidence.
+// is proportional to sin α cos α and vanishes at normal incidence. A porous sheet has both times 1 −
+// porosity.
 //
 // The force is semi-implicit: n, A, |n·v| and |v| are taken at the start of the step, v at its end. It is
 // then −∂W/∂x of a convex quadratic, so any step length and any wind speed is stable. docs/theory/wind.md.
@@ -17,6 +18,7 @@
 #include <memory>
 #include <vector>
 
+#include "muslin/force/field.hpp"
 #include "muslin/force/keyed.hpp"
 #include "muslin/lattice/embedding.hpp"
 #include "muslin/potential/potential.hpp"
@@ -37,6 +39,8 @@ struct WindSettings {
   KeyedNumber gust = 0;    ///< root mean square of each component of the turbulence [m/s] ≥ 0
   double gust_length = 1;  ///< size of its largest eddies [m] > 0
   std::uint64_t seed = 1;  ///< decides the turbulence
+  double porosity = 0;     ///< open share of the surface, 0 … 1
+  std::vector<Field> fields;  ///< of velocities that add to the air [m/s]
 };
 
 class Wind : public Load {

@@ -18,7 +18,7 @@ class MassDamping : public Load {
 
  private:
   double alpha_;
-  std::shared_ptr<const std::vector<double>> masses_;
+  std::vector<double> masses_;
 };
 
 }  // namespace muslin
