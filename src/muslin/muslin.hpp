@@ -15,6 +15,7 @@
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/potential/potential.hpp"
+#include "muslin/scene/field_force_settings.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/scene.hpp"
 #include "muslin/scene/validate.hpp"

@@ -32,8 +32,10 @@ set(MUSLIN_PUBLIC_HEADERS
     core/progress.hpp
     core/vectors.hpp
     field/signed_distance.hpp
+    force/falloff.hpp
     force/force_function.hpp
     force/keyed.hpp
+    force/region.hpp
     geometry/inspect.hpp
     geometry/mesh.hpp
     geometry/point_sequence.hpp
@@ -50,6 +52,7 @@ set(MUSLIN_PUBLIC_HEADERS
     potential/state_arrays.hpp
     potential/step_guard.hpp
     scene/attachment.hpp
+    scene/field_force_settings.hpp
     scene/model.hpp
     scene/pressure.hpp
     scene/scene.hpp

@@ -1,5 +1,7 @@
 #include "muslin/scene/force_kind.hpp"
 
+#include <algorithm>
+
 #include "muslin/scene/common_keys.hpp"
 #include "muslin/schema/interpolation_key.hpp"
 
@@ -62,6 +64,16 @@ void add_value_keys(schema::Table& table, const ForceValue& value) {
   schema::add_rule<ForceSettings>(table, [](const ForceSettings& force, const schema::Subject& subject) {
     if (force.value.keys.empty()) throw subject.error("", "it has no value", "give at least one key");
   });
+}
+
+std::vector<double> masses_acted_on(const Model& model, const ForceSettings& force) {
+  std::vector<double> masses(model.vertex_count(), 0.0);
+  for (const Component& body : model.bodies) {
+    if (!force.acts_on(body.name)) continue;
+    const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
+    std::copy_n(model.masses.begin() + first, body.vertex_count, masses.begin() + first);
+  }
+  return masses;
 }
 
 }  // namespace muslin

@@ -22,6 +22,9 @@ struct ForceKind {
   void (*add)(Model& model, const ForceSettings& force);
 };
 
+/// Returns the masses of all vertices of the model [kg], 0 where the force does not act.
+std::vector<double> masses_acted_on(const Model& model, const ForceSettings& force);
+
 /// The key `body`.
 schema::Declaration force_body_key(const char* otherwise, const char* meaning);
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "muslin/scene/common_keys.hpp"
+#include "muslin/scene/field_force.hpp"
 #include "muslin/scene/gravity_force.hpp"
 #include "muslin/scene/point_force.hpp"
 #include "muslin/scene/wind_force.hpp"
@@ -36,7 +37,11 @@ schema::Table declare_force() {
 }  // namespace
 
 const std::vector<ForceKind>& force_kinds() {
-  static const std::vector<ForceKind> kinds = {gravity_kind, point_kind, wind_kind};
+  static const std::vector<ForceKind> kinds = [] {
+    std::vector<ForceKind> all = {gravity_kind, point_kind, wind_kind};
+    all.insert(all.end(), field_kinds().begin(), field_kinds().end());
+    return all;
+  }();
   return kinds;
 }
 

@@ -1,8 +1,6 @@
 #include "muslin/scene/gravity_force.hpp"
 
-#include <algorithm>
 #include <memory>
-#include <utility>
 
 #include "muslin/force/gravity.hpp"
 
@@ -35,18 +33,12 @@ const schema::Table& keys() {
 }
 
 void add(Model& model, const ForceSettings& force) {
-  std::vector<double> masses(model.vertex_count(), 0.0);
-  for (const Component& body : model.bodies) {
-    if (!force.acts_on(body.name)) continue;
-    const auto first = static_cast<std::ptrdiff_t>(body.first_vertex);
-    std::copy_n(model.masses.begin() + first, body.vertex_count, masses.begin() + first);
-  }
   // Only a field constant during the whole run stores energy; a changing one does work.
   const bool steady =
       force.value.keys.size() == 1 && force.from <= 0 && force.until >= model.scene.time.duration;
-  model.loads.push_back(
-      {force.name, steady ? EnergyRole::potential : EnergyRole::work,
-       std::make_shared<Gravity>(std::move(masses), force.value, Window{force.from, force.until})});
+  model.loads.push_back({force.name, steady ? EnergyRole::potential : EnergyRole::work,
+                         std::make_shared<Gravity>(masses_acted_on(model, force), force.value,
+                                                   Window{force.from, force.until})});
 }
 
 }  // namespace

@@ -62,14 +62,14 @@ struct PinSettings {
 };
 
 struct ForceSettings {
-  std::string type = "gravity";  ///< its kind: "gravity", "point" or "wind"
+  std::string type = "gravity";  ///< its kind, one of those in scene/force_kinds.cpp
   std::string name;
   std::string body;                ///< empty: every body
   std::optional<Selection> where;  ///< point forces; none: the centre of mass of a rigid body
   /// gravity: acceleration [m/s²]; point: force on each selected vertex [N]; wind: velocity [m/s]
   Keyed value;
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
-  OwnSettings own;  ///< those of its kind, such as WindForceSettings
+  OwnSettings own;  ///< those of its kind: WindForceSettings, FieldForceSettings
   Place place;
 
   bool acts_on(const std::string& name_of_body) const { return body.empty() || body == name_of_body; }

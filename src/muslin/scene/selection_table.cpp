@@ -1,6 +1,7 @@
 #include "muslin/scene/selection_table.hpp"
 
 #include "muslin/core/nearest_name.hpp"
+#include "muslin/scene/points_key.hpp"
 #include "muslin/scene/scene.hpp"
 #include "muslin/schema/declare.hpp"
 
@@ -9,20 +10,6 @@ namespace {
 
 using schema::Key;
 using schema::Type;
-
-void read_box(const Key& key, const TomlTable& where, Selection& selection) {
-  const auto& corners = *where.array(key.name, "two corners, [[x, y, z], [x, y, z]]");
-  if (corners.size() != 2) {
-    throw where.error(key.name, fmt::format("`box` is a list of {}", corners.size()),
-                      "give its two corners, [[x, y, z], [x, y, z]]");
-  }
-  selection.box = {to_vector(corners[0], "the first corner of `box`", key.unit),
-                   to_vector(corners[1], "the second corner of `box`", key.unit)};
-  if ((selection.box->min.array() > selection.box->max.array()).any()) {
-    throw where.error(key.name, "the first corner of `box` is not below the second along every axis",
-                      "give the corner of the smallest coordinates first");
-  }
-}
 
 /// One point, or a list of points.
 void read_nearest(const Key& key, const TomlTable& where, Selection& selection) {
@@ -35,12 +22,6 @@ void read_nearest(const Key& key, const TomlTable& where, Selection& selection) 
   }
   for (const TomlValue& item : items)
     selection.nearest.push_back(to_vector(item, "a point of `nearest`", key.unit));
-}
-
-void write_points(const Key& key, const std::vector<Vec3>& points, TomlValue& out) {
-  TomlValue items = schema::list({});
-  for (const Vec3& point : points) items.items.push_back(schema::vector_value(point));
-  schema::append(out, key.name, std::move(items));
 }
 
 const schema::Table& inside_sphere_table() {
@@ -90,20 +71,13 @@ const schema::Table& line_table() {
 }
 
 schema::Table declare_selection() {
-  Key box =
-      schema::custom<Selection>("box", {Type::points}, read_box,
-                                [](const Key& key, const Selection& s, TomlValue& out) {
-                                  if (s.box) write_points(key, {s.box->min, s.box->max}, out);
-                                })
-          .unit("m")
-          .means(
-              "lies in the box between two corners `[[x, y, z], [x, y, z]]`, the smaller coordinates first");
-  box.count = 2;
   schema::Table table = schema::table_of<Selection>(
       "`where`",
       {schema::text("group", &Selection::group)
            .means("carries a vertex or face of this group of the mesh (OBJ `g`)"),
-       box,
+       box_key(&Selection::box)
+           .means(
+               "lies in the box between two corners `[[x, y, z], [x, y, z]]`, the smaller coordinates first"),
        schema::nested("sphere", &Selection::sphere, inside_sphere_table)
            .means("lies within `radius` of `center`"),
        schema::nested("plane", &Selection::plane, near_plane_table)

@@ -6,6 +6,7 @@
 
 #include "muslin/force/wind.hpp"
 #include "muslin/scene/common_keys.hpp"
+#include "muslin/scene/field_force.hpp"
 #include "muslin/scene/wind_force_settings.hpp"
 
 namespace muslin {
@@ -56,7 +57,10 @@ const schema::Table& keys() {
              .means("size of its largest eddies"),
          schema::whole_number("seed", &Own::seed)
              .range(Range::non_negative())
-             .means("whole number that seeds the turbulence")},
+             .means("whole number that seeds the turbulence"),
+         schema::number("porosity", &Own::porosity)
+             .range({0, 1, false})
+             .means("open share of the surface, through which air passes: drag and lift are those of the rest")},
         check_lift);
     return wind;
   }();
@@ -91,6 +95,8 @@ void add(Model& model, const ForceSettings& force) {
     wind.gust = own.gust;
     wind.gust_length = own.gust_length;
     wind.seed = static_cast<std::uint64_t>(own.seed);
+    wind.porosity = own.porosity;
+    wind.fields = fields_in_air(model.scene, force, body.name);
     // Without a consistent front a face counts from both sides.
     wind.two_sided = body.sheet || body.report.flipped_edges > 0 || body.report.non_manifold_edges > 0;
     const std::string name = soft > 1 ? force.name + ": " + body.name : force.name;

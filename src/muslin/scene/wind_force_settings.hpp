@@ -14,6 +14,7 @@ struct WindForceSettings {
   KeyedNumber gust = 0.0;         ///< root mean square of each component of the turbulence [m/s]
   double gust_length = 1.0;  ///< size of its largest eddies [m]
   std::int64_t seed = 1;     ///< decides the turbulence
+  double porosity = 0.0;     ///< open share of the surface
 };
 
 }  // namespace muslin
