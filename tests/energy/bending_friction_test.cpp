@@ -3,16 +3,15 @@
 #include "muslin/energy/bending_friction.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/clamped_strip.hpp"
 #include "support/linearized_product.hpp"
 #include "support/potential_battery.hpp"
 #include "support/sheet.hpp"
-#include "support/strips.hpp"
 #include <gtest/gtest.h>
 
 #include "muslin/core/error.hpp"
@@ -62,41 +61,6 @@ class SpringAndSlider {
   double slid_ = 0;
 };
 
-/// A strip from x = 0 to 1 between two clamps, a row of cells each.
-struct ClampedStrip {
-  ClampedStrip(const std::string& kind, int n, double width) : mesh(test::strip(kind, n, width, true)) {
-    std::vector<int> end;
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-      if (std::abs(mesh.positions[v].x() - 1) < 1e-9) end.push_back(static_cast<int>(v));
-    const auto y = [&](int v) { return mesh.positions[static_cast<std::size_t>(v)].y(); };
-    std::sort(end.begin(), end.end(), [&](int a, int b) { return y(a) < y(b); });
-    const int first = static_cast<int>(mesh.vertex_count());
-    for (const int v : end) mesh.positions.emplace_back(1 + 1.0 / n, y(v), 0);
-    for (int j = 0; j + 1 < static_cast<int>(end.size()); ++j) {
-      const int a = end[static_cast<std::size_t>(j)], d = end[static_cast<std::size_t>(j) + 1];
-      mesh.add_face(std::array{a, first + j, first + j + 1});
-      mesh.add_face(std::array{a, first + j + 1, d});
-    }
-    for (const Vec3& p : mesh.positions) held.push_back(p.x() < 1e-9 || p.x() > 1 - 1e-9 ? 1 : 0);
-  }
-
-  /// Between the clamps an arc, beyond them its tangents.
-  std::vector<Vec3> rolled(double curvature) const {
-    std::vector<Vec3> x;
-    for (const Vec3& p : mesh.positions) {
-      const double s = std::clamp(p.x(), 0.0, 1.0), angle = curvature * s;
-      Vec3 on_arc = curvature == 0 ? Vec3(s, 0, 0)
-                                   : Vec3(std::sin(angle) / curvature, 0, (1 - std::cos(angle)) / curvature);
-      on_arc += (p.x() - s) * Vec3(std::cos(angle), 0, std::sin(angle));
-      x.emplace_back(on_arc.x(), p.y(), on_arc.z());
-    }
-    return x;
-  }
-
-  Mesh mesh;
-  std::vector<std::uint8_t> held;
-};
-
 class FrictionLoop : public testing::TestWithParam<std::string> {};
 
 /// Curvatures from 0 to `most`, to −`most` and to `most` again.
@@ -116,7 +80,7 @@ TEST_P(FrictionLoop, OfAStripRolledToAndFroIsTheClosedForm) {
   constexpr int quarter = 12;
   const std::vector<double> path = loop(most, quarter);
   for (const int n : {10, 20, 40}) {
-    const ClampedStrip strip(GetParam(), n, width);
+    const test::ClampedStrip strip(GetParam(), n, width);
     const Shell shell = build_shell(strip.mesh, strip.mesh.positions, {Vec3::UnitX()});
     const ShellBending plate(shell, BendingModuli{rigidity, rigidity, rigidity, 0}, nullptr, strip.held);
     Friction friction(shell, limits, strip.held);

@@ -75,21 +75,12 @@ class Coupler {
   HingeCoupling couple() const { return assemble(triangles()); }
 
   PlateCurvatures curvatures() const {
-    PlateCurvatures result;
-    result.hinge_count = shell_.hinges.size();
-    result.first.push_back(0);
-    const std::vector<Triangle> rows = triangles();
-    for (std::size_t t = 0; t < rows.size(); ++t) {
-      // The free sides follow from the others; κ = (1/A) Σ l α n⊗n.
-      const Mat3 all = normals_of(t).transpose() * compliance_[t] * stiffness_[t] / shell_.areas[t];
-      for (std::size_t i = 0; i < rows[t].hinges.size(); ++i) {
-        result.hinges.push_back(rows[t].hinges[i]);
-        result.weights.push_back((all * rows[t].turns.col(static_cast<Eigen::Index>(i))).head<2>());
-      }
-      result.first.push_back(static_cast<int>(result.hinges.size()));
-    }
-    result.find_uses();
-    return result;
+    return rows_of<Vec2>([](const Vec3& curvature) -> Vec2 { return curvature.head<2>(); });
+  }
+
+  EvenCurvatures even() const {
+    const Mat3 root = rigidity_.llt().matrixU();
+    return {rows_of<Vec3>([&](const Vec3& curvature) -> Vec3 { return root * curvature; }), root};
   }
 
  private:
@@ -101,6 +92,26 @@ class Coupler {
     std::vector<int> hinges;
     Eigen::Matrix<double, 3, Eigen::Dynamic> turns;
   };
+
+  /// `part` of every triangle's (κ_uu, κ_vv, 2 κ_uv).
+  template <class Curvature, class Part>
+  CurvatureRows<Curvature> rows_of(const Part& part) const {
+    CurvatureRows<Curvature> result;
+    result.hinge_count = shell_.hinges.size();
+    result.first.push_back(0);
+    const std::vector<Triangle> rows = triangles();
+    for (std::size_t t = 0; t < rows.size(); ++t) {
+      // The free sides follow from the others; κ = (1/A) Σ l α n⊗n.
+      const Mat3 all = normals_of(t).transpose() * compliance_[t] * stiffness_[t] / shell_.areas[t];
+      for (std::size_t i = 0; i < rows[t].hinges.size(); ++i) {
+        result.hinges.push_back(rows[t].hinges[i]);
+        result.weights.push_back(part(all * rows[t].turns.col(static_cast<Eigen::Index>(i))));
+      }
+      result.first.push_back(static_cast<int>(result.hinges.size()));
+    }
+    result.find_uses();
+    return result;
+  }
 
   void find_edges(std::span<const std::uint8_t> held) {
     const std::size_t count = shell_.triangles.size();
@@ -476,6 +487,13 @@ HingeCoupling couple_hinges(const Shell& shell, const BendingModuli& moduli,
 PlateCurvatures plate_curvatures(const Shell& shell, const BendingModuli& moduli,
                                  std::span<const std::uint8_t> held) {
   return Coupler(shell, moduli, held).curvatures();
+}
+
+EvenCurvatures even_curvatures(const Shell& shell, const BendingModuli& moduli,
+                               std::span<const std::uint8_t> held) {
+  require(moduli.warp > 0 || moduli.weft > 0 || moduli.bias > 0, "a plate has no bending rigidity",
+          "give a modulus above 0");
+  return Coupler(shell, moduli, held).even();
 }
 
 }  // namespace muslin

@@ -55,4 +55,14 @@ HingeCoupling couple_hinges(const Shell& shell, const BendingModuli& moduli,
 PlateCurvatures plate_curvatures(const Shell& shell, const BendingModuli& moduli,
                                  std::span<const std::uint8_t> held = {});
 
+/// Curvatures y = R κ, κ = (κ_uu, κ_vv, 2 κ_uv), in which the plate is isotropic: D = RᵀR, so that
+/// dᵀ K d = Σ A |y|².
+struct EvenCurvatures {
+  CurvatureRows<Vec3> rows;  ///< of y [√(N·m)/m]
+  Mat3 root;                 ///< R [√(N·m)]
+};
+/// Errors: usage, as couple_hinges, and if no modulus is above 0.
+EvenCurvatures even_curvatures(const Shell& shell, const BendingModuli& moduli,
+                               std::span<const std::uint8_t> held = {});
+
 }  // namespace muslin

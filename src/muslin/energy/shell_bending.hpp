@@ -58,14 +58,15 @@ class ShellBending : public ElementEnergy {
   void linearize_stiffness(Stiffness kind, ConstVectors x, double factor, HessianSink& into,
                            std::size_t first) const override;
 
+  /// Returns true if `scale` K is so large relative to the masses that linear systems need more than Λ.
+  bool is_stiff(double scale, std::span<const double> masses, std::span<const std::uint8_t> fixed) const;
+
   const HingeCoupling& coupling() const { return coupling_; }
   const std::shared_ptr<const HingeAngles>& angles() const { return angles_; }
 
  private:
   /// Sets what linear systems need, of a plate at least as stiff as this one ever is.
   void prepare_systems(const Shell& shell, const HingeCoupling& stiffest);
-  /// Returns true if `scale` K is so large relative to the masses that linear systems need more than Λ.
-  bool is_stiff(double scale, std::span<const double> masses, std::span<const std::uint8_t> fixed) const;
 
   std::shared_ptr<const HingeAngles> angles_;
   HingeCoupling coupling_;  // Λ bounds all of the stiffness

@@ -135,6 +135,16 @@ void check_curves(const ShellMaterial& m, const schema::Subject& subject) {
                       "give `poisson` from 0 to " + at_most(std::min(0.99, highest)));
 }
 
+void check_yield(const ShellMaterial& m, const schema::Subject& subject) {
+  if (!m.yield_curvature) return;
+  if (has_bending_curves(m))
+    throw subject.error("yield_curvature", "a sheet with a curve of bending cannot crease",
+                        "give `bending_warp` and `bending_weft` in place of the curves");
+  if (!(m.bending_warp > 0))
+    throw subject.error("yield_curvature", "a sheet whose warp does not resist bending cannot crease",
+                        "give `bending_warp` more than 0");
+}
+
 /// A curve in place of a modulus.
 schema::Declaration test_curve(const char* name, std::optional<MeasuredCurve> ShellMaterial::* member,
                                const char* modulus, double widest) {
@@ -237,6 +247,21 @@ schema::Table declared() {
            .range({1e-3, 1e6, false})
            .shown_if<Sheet>(has_bending_friction)
            .means("change of curvature over which internal friction builds up"),
+       number("yield_curvature", &ShellMaterial::yield_curvature)
+           .unit("1/m")
+           .range({1e-3, 1e6, false})
+           .otherwise("it never creases")
+           .means("curvature of bent warp beyond which the sheet keeps a crease: released, it stays bent by "
+                  "what is above it"),
+       number("yield_hardening", &ShellMaterial::yield_hardening)
+           .range({0, 1, false})
+           .shown_if<Sheet>([](const Sheet& m) { return m.yield_curvature.has_value(); })
+           .means("stiffness beyond yield over that below"),
+       number("yield_recovery", &ShellMaterial::yield_recovery)
+           .unit("s")
+           .range({0, 1e9, true})
+           .otherwise("creases stay")
+           .means("time in which creases fade to 37 % of themselves, as under an iron"),
        number("stretch_limit", &ShellMaterial::stretch_limit)
            .range({least_stretch_limit, 10, false})
            .varies(&Sheet::variations, shell_forms)
@@ -263,6 +288,7 @@ schema::Table declared() {
   };
   schema::add_rule<ShellMaterial>(table, check_curves);
   schema::add_rule<ShellMaterial>(table, check_bias);
+  schema::add_rule<ShellMaterial>(table, check_yield);
   return table;
 }
 

@@ -40,6 +40,9 @@ struct ShellMaterial {
   double bending_friction_warp = 0;                 ///< greatest moment per width of internal friction [N]
   double bending_friction_weft = 0;                 ///< [N]
   double bending_friction_curvature = 10;           ///< over which it builds up [1/m]
+  std::optional<double> yield_curvature;  ///< elastic curvature of warp beyond which creases stay [1/m]
+  double yield_hardening = 0;             ///< rigidity beyond yield over that below, 0 … 1
+  std::optional<double> yield_recovery;   ///< time in which creases fade to 1/e of themselves [s]
   std::optional<double> stretch_limit;              ///< of bodies that have none of their own
   double mass_damping = 0;                          ///< Rayleigh α [1/s]
   double stiffness_damping = 0;                     ///< Rayleigh β of stretch and shear [s]

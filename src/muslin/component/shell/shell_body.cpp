@@ -114,6 +114,10 @@ std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
                                  m.bending_friction_curvature};
     hash = hash_bytes(friction.data(), sizeof friction, hash);
   }
+  if (m.yield_curvature) {
+    const std::array yield = {*m.yield_curvature, m.yield_hardening, m.yield_recovery.value_or(0)};
+    hash = hash_bytes(yield.data(), sizeof yield, hash);
+  }
   return hash;
 }
 
@@ -167,6 +171,10 @@ std::string ShellBody::description() const {
   if (has_bending_friction(m))
     text += fmt::format("  friction    of bending, up to warp {:.3g}, weft {:.3g} N within {:.3g}/m\n",
                         m.bending_friction_warp, m.bending_friction_weft, m.bending_friction_curvature);
+  if (m.yield_curvature)
+    text += fmt::format(
+        "  yield       where warp bends by more than {:.3g}/m, then with {:.3g} of its stiffness\n",
+        *m.yield_curvature, m.yield_hardening);
   if (const double edge = trusted_edge(m, own().compression).length(); edge > 0)
     text += fmt::format("  drape       as the fabric's with edges of up to {:.2g} m\n", edge);
   if (own().stretch_limit)

@@ -1,5 +1,6 @@
 // The energies and dampings of a shell.
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "muslin/energy/element_energy.hpp"
 #include "muslin/energy/measured_membrane.hpp"
 #include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/plastic_bending.hpp"
 #include "muslin/energy/shell_bending.hpp"
 #include "muslin/energy/stretch_limit.hpp"
 #include "muslin/material/measured_sheet.hpp"
@@ -41,7 +43,7 @@ class ShellTerms {
       add("stretch limit", std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness, pattern));
     }
     const auto bending = bending_on(pattern, held);
-    add("bending", bending);
+    add_bending(bending, held);
     add_blocks(*bending, 2 * 4);  // blocks of half the stiffness that bounds it
     if (has_bending_friction(m)) add_bending_friction(*bending, held);
     if (m.stiffness_damping > 0)
@@ -78,9 +80,20 @@ class ShellTerms {
           body_.shell, BendingCurves{moments.warp, moments.weft, m.bending_bias, m.poisson},
           std::move(pattern), held);
     }
-    return std::make_shared<ShellBending>(
-        body_.shell, BendingModuli{m.bending_warp, m.bending_weft, m.bending_bias, m.poisson},
-        std::move(pattern), held);
+    return std::make_shared<ShellBending>(body_.shell, plate(), std::move(pattern), held);
+  }
+  BendingModuli plate() const {
+    const ShellMaterial& m = material_;
+    return {m.bending_warp, m.bending_weft, m.bending_bias, m.poisson};
+  }
+  void add_bending(const std::shared_ptr<const ShellBending>& elastic, std::span<const std::uint8_t> held) {
+    const ShellMaterial& m = material_;
+    if (!m.yield_curvature) return add("bending", elastic);
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const BendingYield yield{*m.yield_curvature, m.yield_hardening, m.yield_recovery.value_or(never)};
+    body_.loads.push_back(
+        {"bending", EnergyRole::elastic,
+         std::make_shared<PlasticBending>(body_.name, body_.shell, plate(), yield, elastic, held)});
   }
   void add_bending_friction(const ShellBending& bending, std::span<const std::uint8_t> held) {
     const ShellMaterial& m = material_;
