@@ -29,7 +29,7 @@ class FieldPattern {
 
 /// Place, time and strength that all fields have.
 struct FieldExtent {
-  KeyedNumber strength{{{0, 1}}};
+  KeyedNumber strength = 1;
   Window window;
   Vec3 center = Vec3::Zero();  ///< [m], at time 0
   Vec3 travel = Vec3::Zero();  ///< velocity at which centre and pattern move; the region stays [m/s]
