@@ -252,7 +252,8 @@ TEST(AttachmentRun, ContactLeavesJointsAlone) {
   const auto model = model_of(scene + gravity + joint);
   EXPECT_FALSE(model->contact->exempt.point_triangles.empty());
   const Simulation simulation = after(model, 12);
-  EXPECT_LT(simulation.attachment_force("seam").largest, 0.01);
+  // A pendulum that falls from the horizontal pulls by three times its weight.
+  EXPECT_LT(simulation.attachment_force("seam").largest, 3 * 0.002 * g / 5);
   const std::string ground = cloth("a", "[0, 0.0001, 0]") + "[[collider]]\nname = 'floor'\nshape = 'plane'\n";
   EXPECT_EQ(model_of(ground + "[[attachment]]\nbody = 'a'\n" + corner + "to = 'floor'\n")
                 ->contact->exempt.point_planes.size(),

@@ -32,6 +32,10 @@ static_assert(static_cast<int>(Settings::Rest::cord) == static_cast<int>(Attachm
 /// A stiff joint of a rigid body, in units of mass/stopping_time²: the weight of the body stretches it by
 /// g stopping_time²/100, 2 µm.
 constexpr double rigid_share = 100;
+/// A stiff joint of a soft body, in units of mass/step² with the largest stable step: a sixteenth of the
+/// bound of a vertex's stiffness, and about the stiffness of the elements around it. Stiffer joints make
+/// steps of normal effort leave more work unbalanced.
+constexpr double soft_share = 0.25;
 
 schema::Table declare_attachment() {
   schema::Table table = schema::table_of<Settings>(
@@ -212,12 +216,11 @@ class AttachmentBuilder {
     }
   }
 
-  /// Returns the stiffness of the stiffest vertex of a soft body, scaled to the mass of the point: a joint of
-  /// this stiffness gives way less than the material around it.
+  /// Returns the stiffness of a stiff joint at a point.
   static double material(const Component& component, const JointPoint& point) {
     if (point.mass == 0) return std::numeric_limits<double>::infinity();
     const double step = component.statistics.stable_step;
-    return std::isfinite(step) ? 4 * point.mass / (step * step)
+    return std::isfinite(step) ? soft_share * point.mass / (step * step)
                                : rigid_share * point.mass / (stopping_time * stopping_time);
   }
 
