@@ -12,6 +12,7 @@
 #include "muslin/core/counted.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/shell/inverted_triangles.hpp"
+#include "muslin/shell/rest_scale.hpp"
 
 namespace muslin {
 namespace {
@@ -85,6 +86,7 @@ class ShellBuilder {
     }
     body_.sheet = true;
     body_.shell = build_shell(body_.mesh, rest.positions, weave);
+    scale_rest(body_.shell, own_.rest_scale());
     if (body_.shell.odd_faces > 0) {
       say(fmt::format(
           "{} triangles stand across the warp, which has no direction there; unwrap the mesh or choose "

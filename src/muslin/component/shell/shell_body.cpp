@@ -53,8 +53,10 @@ const ShellMaterial& ShellBody::material() const {
 }
 
 std::vector<double> ShellBody::masses() const {
+  // Cloth that shrinks keeps its mass.
+  const double density = material().areal_density / own().rest_scale().prod();
   std::vector<double> masses = shell.vertex_areas;
-  for (double& m : masses) m *= material().areal_density;
+  for (double& m : masses) m *= density;
   return masses;
 }
 
@@ -155,7 +157,7 @@ std::string ShellBody::description() const {
   text += fmt::format("  shell       {} vertices, {} triangles, {} hinges, edges of {:.4g} m on average\n",
                       s.vertices, s.triangles, s.hinges, shell.mean_edge);
   text += fmt::format("  mass        {:.6g} kg of {}, {:.4g} kg/m² on {:.6g} m²\n", s.mass,
-                      settings.material.name, m.areal_density, shell.area);
+                      settings.material.name, m.areal_density, shell.area / own().rest_scale().prod());
   text += fmt::format(
       "  stiffness   warp {:.4g}, weft {:.4g}, shear {:.4g} N/m; bending {:.3g}, {:.3g}, bias "
       "{:.3g} N·m\n",

@@ -19,8 +19,12 @@ struct ShellBodySettings {
   Place rest_mesh_place;
   /// Direction of the warp threads; default: along the texture's u, or the longest side.
   std::optional<Vec3> warp;
+  double rest_scale_warp = 1;             ///< rest length over that of the mesh or the rest mesh
+  std::optional<double> rest_scale_weft;  ///< default: as warp
   Compression compression = Compression::buckling;
   std::optional<double> stretch_limit;  ///< of length to rest length in every direction; default: none
+
+  Vec2 rest_scale() const { return {rest_scale_warp, rest_scale_weft.value_or(rest_scale_warp)}; }
 };
 
 }  // namespace muslin

@@ -78,6 +78,13 @@ const schema::Table& keys() {
        schema::path("rest_mesh", &Own::rest_mesh, &Own::rest_mesh_place)
            .otherwise("the mesh")
            .means("a mesh with the same polygons in the stress-free shape; `scale` applies to it"),
+       schema::number("rest_scale_warp", &Own::rest_scale_warp)
+           .range({0.01, 100, false})
+           .means("stress-free length along warp over that of the mesh: below 1 the cloth shrinks"),
+       schema::number("rest_scale_weft", &Own::rest_scale_weft)
+           .range({0.01, 100, false})
+           .otherwise("as warp")
+           .means("stress-free length along weft over that of the mesh"),
        schema::direction("warp", &Own::warp, "[1, 0, 0]")
            .otherwise("see below")
            .means("direction of the warp threads in the mesh as modelled"),
