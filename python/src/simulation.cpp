@@ -95,7 +95,7 @@ int next_frame(Self& self) {
 void bind_forces(nb::module_& m) {
   nb::class_<PinForce>(m, "PinForce", "The force that a pin exerts on its body.")
       .def_prop_ro(
-          "sum", [](const PinForce& force) { return to_array(force.sum); },
+          "sum", [](const PinForce& force) { return to_array(force.sum); }, nb::rv_policy::automatic,
           "On all of its vertices, (3,) [N].")
       .def_ro("mean", &PinForce::mean, "Magnitude on a vertex, mean over its vertices [N].")
       .def_ro("largest", &PinForce::largest, "Magnitude on a vertex, the largest [N].")
@@ -103,7 +103,8 @@ void bind_forces(nb::module_& m) {
   nb::class_<AttachmentForce>(m, "AttachmentForce",
                               "The force of the springs of an attachment on the points of its `body`.")
       .def_prop_ro(
-          "sum", [](const AttachmentForce& force) { return to_array(force.sum); }, "Of all joints, (3,) [N].")
+          "sum", [](const AttachmentForce& force) { return to_array(force.sum); }, nb::rv_policy::automatic,
+          "Of all joints, (3,) [N].")
       .def_ro("mean", &AttachmentForce::mean, "Magnitude of a joint that holds [N].")
       .def_ro("largest", &AttachmentForce::largest, "The largest magnitude of a joint [N].")
       .def_ro("holding", &AttachmentForce::holding, "Joints that hold; 0 before the first step.");
