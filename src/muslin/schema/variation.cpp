@@ -6,17 +6,6 @@
 
 namespace muslin::schema {
 
-double value_at(const std::vector<NumberKeyframe>& keyframes, double time) {
-  const auto next = std::find_if(keyframes.begin(), keyframes.end(),
-                                 [&](const NumberKeyframe& keyframe) { return keyframe.time > time; });
-  if (next == keyframes.begin()) return next->value;
-  const NumberKeyframe& last = *std::prev(next);
-  if (next == keyframes.end() || last.interpolation == Interpolation::step) return last.value;
-  const double u = (time - last.time) / (next->time - last.time);
-  const double share = last.interpolation == Interpolation::smooth ? u * u * (3 - 2 * u) : u;
-  return last.value + share * (next->value - last.value);
-}
-
 double Variation::at_weight(double weight) const {
   double share = weight;
   if (!curve.empty()) {

@@ -13,21 +13,16 @@
 
 #include "muslin/api.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/core/keyframes.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin::schema {
-
-enum class Interpolation { linear, step, smooth };
 
 struct NumberKeyframe {
   double time = 0;  ///< [s]
   double value = 0;
   Interpolation interpolation = Interpolation::linear;  ///< from this keyframe to the next
 };
-
-/// Returns the value at a time, constant before the first keyframe and after the last. `keyframes` ascend in
-/// time and are not empty. A smooth one follows 3 u² − 2 u³, u the share of time between both.
-MUSLIN_API double value_at(const std::vector<NumberKeyframe>& keyframes, double time);
 
 struct MUSLIN_API Variation {
   std::string key;  ///< that varies

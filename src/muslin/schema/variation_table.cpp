@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "muslin/schema/declare.hpp"
+#include "muslin/schema/interpolation_key.hpp"
 
 namespace muslin::schema {
 namespace {
@@ -54,8 +55,7 @@ const Table& number_keyframe_table() {
            .required()
            .means("time of the keyframe, later than the previous one"),
        number("value", &NumberKeyframe::value).required().means("the number at that time"),
-       word("interpolation", &NumberKeyframe::interpolation, {"linear", "step", "smooth"})
-           .means("how it goes on to the next keyframe: `step` holds the value until then")});
+       interpolation_key<NumberKeyframe>()});
   return table;
 }
 
