@@ -53,6 +53,8 @@ void bind_diagnostics(nb::module_& m) {
       .def_ro("elastic", &Diagnostics::elastic, "Stored in the material [J].")
       .def_ro("potential", &Diagnostics::potential, "Stored in fields such as gravity [J].")
       .def_ro("work", &Diagnostics::work, "External work since the start [J].")
+      .def_ro("material_work", &Diagnostics::material_work,
+              "Share of `work` that changes of the material's numbers did [J].")
       .def_ro("dissipated", &Diagnostics::dissipated, "Lost since the start [J].")
       .def_ro("unbalanced", &Diagnostics::unbalanced,
               "Work of the solver's residuals since the start [J]: the balance has changed by this amount.")

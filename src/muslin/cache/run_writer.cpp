@@ -433,6 +433,7 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
                         {"converged_steps", quality.converged_steps},
                         {"worst_error", quality.worst_error},
                         {"frames_missed", quality.frames_missed}};
+  run["energy"] = {{"material_work", simulation.diagnostics().material_work}};
   run["held_back"] = {{"frames", quality.frames_held_back}, {"most", quality.max_held_back}};
   run["crossings"] = {{"at_end", quality.crossings_at_end}, {"frames", quality.frames_crossing}};
   run["overstretched"] = Json::array();

@@ -38,13 +38,8 @@ void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs,
 }
 
 std::uint64_t material_hash(const Material& m, double own, std::uint64_t seed) {
-  const std::array<double, 8> numbers = {
-      m.density,        m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus,
-      m.volume_modulus, m.mass_damping, m.stiffness_damping,     own};
-  const std::uint64_t hash = hash_bytes(numbers.data(), sizeof numbers, seed);
-  if (!m.youngs_modulus) return hash;
-  const std::array<double, 2> solid = {*m.youngs_modulus, m.poisson};
-  return hash_bytes(solid.data(), sizeof solid, hash);
+  const std::array numbers = {m.density, own};
+  return hash_bytes(m.law.data(), m.law.size(), hash_bytes(numbers.data(), sizeof numbers, seed));
 }
 
 }  // namespace muslin

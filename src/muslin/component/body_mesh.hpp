@@ -30,8 +30,8 @@ void warn_of_body(const ComponentInputs& inputs, const std::string& body, const 
 /// the place in the scene and the mesh file.
 void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, Component& component);
 
-/// Continues a hash with the numbers of a material that a saved state must fit, and with a number of the
-/// kind's own, or 0.
+/// Continues a hash with what a saved state must fit of a material, its density and law, and with a number of
+/// the kind's own, or 0. Stiffness and damping may change on a resume.
 std::uint64_t material_hash(const Material& material, double own, std::uint64_t seed);
 
 }  // namespace muslin

@@ -51,21 +51,21 @@ JoinedRuns join(const Springs& springs) {
 }  // namespace
 
 SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::array<double, 3>& moduli,
-                           std::vector<float> weights)
-    : weights_(std::move(weights)), count_(springs.count) {
+                           std::vector<float> weights, std::shared_ptr<const SpringNetwork> network)
+    : weights_(std::move(weights)), count_(springs.count), network_(std::move(network)) {
   require(width > 0, "the width of a voxel is not positive", "give metres");
   assert(weights_.empty() || weights_.size() == static_cast<std::size_t>(count_));
   for (const SpringDirection& direction : springs.directions) {
     types_.push_back({width * direction.offset.cast<double>().norm(),
                       width * moduli[static_cast<std::size_t>(direction.kind)]});
   }
-  SpringNetwork network;
+  SpringNetwork made;
   for (const SpringRun& run : springs.runs) {
-    network.vertex_count = std::max({network.vertex_count, run.a + run.length, run.b + run.length});
-    network.runs.push_back({run.direction, run.a, run.b, run.length});
+    made.vertex_count = std::max({made.vertex_count, run.a + run.length, run.b + run.length});
+    made.runs.push_back({run.direction, run.a, run.b, run.length});
   }
   const JoinedRuns joined = join(springs);
-  slabs_ = SpringSlabs(joined.runs, network.vertex_count);
+  slabs_ = SpringSlabs(joined.runs, made.vertex_count);
   const auto weight = [&](std::int64_t spring) {
     return spring < 0 ? 0.0F : weights_.empty() ? 1.0F : weights_[static_cast<std::size_t>(spring)];
   };
@@ -74,11 +74,12 @@ SpringEnergy::SpringEnergy(const Springs& springs, double width, const std::arra
     std::transform(joined.springs.begin(), joined.springs.end(), slot_weights_.begin(), weight);
   }
 
+  if (network_) return;
   if (!weights_.empty()) {
     for (const SpringRun& run : springs.runs)
-      for (int i = 0; i < run.length; ++i) network.weights.push_back(weight(run.first + i));
+      for (int i = 0; i < run.length; ++i) made.weights.push_back(weight(run.first + i));
   }
-  network_ = std::make_shared<const SpringNetwork>(std::move(network));
+  network_ = std::make_shared<const SpringNetwork>(std::move(made));
 }
 
 std::vector<CentralSpring> SpringEnergy::kinds(double factor) const {

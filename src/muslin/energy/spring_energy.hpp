@@ -27,9 +27,10 @@ namespace muslin {
 class SpringEnergy : public Potential {
  public:
   /// `width` is the voxel width [m]; `moduli` by SpringKind [N/m²], ≥ 0; `weights` (#springs, or empty for
-  /// all 1) scales single springs, e.g. at a boundary or a partly filled voxel.
+  /// all 1) scales single springs, e.g. at a boundary or a partly filled voxel. `network`: that of an energy
+  /// of the same springs and weights, for linear systems to recognise; null: a new one.
   SpringEnergy(const Springs& springs, double width, const std::array<double, 3>& moduli,
-               std::vector<float> weights = {});
+               std::vector<float> weights = {}, std::shared_ptr<const SpringNetwork> network = nullptr);
 
   double value(ConstVectors x) const override;
   void add_gradient(ConstVectors x, Vectors g) const override;

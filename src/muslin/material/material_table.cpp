@@ -17,7 +17,8 @@ using schema::Declaration;
 // Upper bounds far above any material: they keep products of the quantities finite.
 constexpr Range modulus{0, 1e15, false};
 constexpr Range damping{0, 1e6, false};
-constexpr schema::VaryingForms lattice_forms{.map = false, .keyframes = false};
+constexpr schema::VaryingForms lattice_forms{.map = false, .keyframes = true};
+constexpr schema::VaryingForms unchanging_forms{.map = false, .keyframes = false};
 
 /// A modulus of springs, in whose place a scene may give Young's modulus.
 Declaration spring_modulus(const char* name, double Material::* member, const char* meaning) {
@@ -45,15 +46,24 @@ Declaration law_key() {
       .means(meaning);
 }
 
+/// Lets the numbers change on a resume that do not decide masses.
+schema::Table let_change(schema::Table table) {
+  for (schema::Key& key : table.keys) {
+    if (key.name == "density" || key.name == "law") continue;
+    key.may_change_on_resume = true;
+  }
+  return table;
+}
+
 }  // namespace
 
 const schema::Table& lattice_material_table() {
-  static const schema::Table table = schema::table_of<Material>(
+  static const schema::Table table = let_change(schema::table_of<Material>(
       "[lattice]",
       {schema::number("density", &Material::density)
            .unit("kg/m³")
            .range({0, 1e6, true})
-           .varies(&Material::variations, lattice_forms)
+           .varies(&Material::variations, unchanging_forms)
            .required_without({"base"})
            .means("mass per volume"),
        spring_modulus("edge_modulus", &Material::edge_modulus,
@@ -82,7 +92,7 @@ const schema::Table& lattice_material_table() {
        schema::number("youngs_modulus", &Material::youngs_modulus)
            .unit("N/m²")
            .range({0, 1e15, true})
-           .varies(&Material::variations, lattice_forms)
+           .varies(&Material::variations, unchanging_forms)
            .shown_if<Material>(is_solid)
            .means(
                "Young's modulus of the solid; with springs, of a large block along its axes, in place of the "
@@ -91,7 +101,7 @@ const schema::Table& lattice_material_table() {
            .range({-0.99, 0.499, false})
            .needs("law", "springs have a Poisson's ratio of their own; add law = \"neo_hookean\"")
            .shown_if<Material>(is_solid)
-           .means("Poisson's ratio of the solid")});
+           .means("Poisson's ratio of the solid")}));
   return table;
 }
 

@@ -9,6 +9,7 @@
 
 #include "muslin/core/toml_table.hpp"
 #include "muslin/material/derive_anew.hpp"
+#include "muslin/material/keyed_material.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/material/varied_material.hpp"
 #include "muslin/schema/declare.hpp"
@@ -18,7 +19,8 @@ namespace {
 
 constexpr Range sheet_modulus{0, 1e12, false};
 constexpr Range sheet_damping{0, 1e6, false};
-constexpr schema::VaryingForms shell_forms{.map = false, .keyframes = false};
+constexpr schema::VaryingForms shell_forms{.map = false, .keyframes = true};
+constexpr schema::VaryingForms unchanging_shell_forms{.map = false, .keyframes = false};
 
 /// Returns the bias rigidity of an orthotropic plate whose twisting rigidity is the geometric mean of the two
 /// bending ones.
@@ -145,6 +147,16 @@ void check_yield(const ShellMaterial& m, const schema::Subject& subject) {
                         "give `bending_warp` more than 0");
 }
 
+/// Lets the numbers change on a resume that decide neither masses nor the memory of internal friction and creases.
+void let_sheet_change(schema::Table& table) {
+  for (schema::Key& key : table.keys) {
+    if (key.name == "areal_density" || key.name.starts_with("bending_friction") ||
+        key.name.starts_with("yield"))
+      continue;
+    key.may_change_on_resume = true;
+  }
+}
+
 /// A curve in place of a modulus.
 schema::Declaration test_curve(const char* name, std::optional<MeasuredCurve> ShellMaterial::* member,
                                const char* modulus, double widest) {
@@ -161,7 +173,7 @@ schema::Table declared() {
       {number("areal_density", &ShellMaterial::areal_density)
            .unit("kg/m²")
            .range({0, 1e6, true})
-           .varies(&Sheet::variations, shell_forms)
+           .varies(&Sheet::variations, unchanging_shell_forms)
            .required_without({"base"})
            .means("mass per area"),
        number("membrane_warp", &ShellMaterial::membrane_warp)
@@ -264,7 +276,7 @@ schema::Table declared() {
            .means("time in which creases fade to 37 % of themselves, as under an iron"),
        number("stretch_limit", &ShellMaterial::stretch_limit)
            .range({least_stretch_limit, 10, false})
-           .varies(&Sheet::variations, shell_forms)
+           .varies(&Sheet::variations, unchanging_shell_forms)
            .means("largest stretch in any direction, as length over rest length, unless the body has a "
                   "`stretch_limit` of its own"),
        number("mass_damping", &ShellMaterial::mass_damping)
@@ -289,6 +301,10 @@ schema::Table declared() {
   schema::add_rule<ShellMaterial>(table, check_curves);
   schema::add_rule<ShellMaterial>(table, check_bias);
   schema::add_rule<ShellMaterial>(table, check_yield);
+  schema::add_rule<ShellMaterial>(table, [](const ShellMaterial& m, const schema::Subject& subject) {
+    for (const double time : times_to_check(m.variations)) check_bias(material_at(m, time), subject);
+  });
+  let_sheet_change(table);
   return table;
 }
 

@@ -133,9 +133,6 @@ std::vector<double> driving_accelerations(const Model& model, const Terms& terms
                                           std::span<const std::unique_ptr<Potential>> loads,
                                           ConstVectors positions, const Scratch& scratch) {
   std::vector<Vec3> force(positions.size(), Vec3::Zero());
-  const auto drives = [](EnergyRole role) {
-    return role == EnergyRole::potential || role == EnergyRole::work;
-  };
   for (const PotentialTerm& term : terms.potentials)
     if (drives(term.role)) term.potential->add_gradient(positions, force);
   for (std::size_t i = 0; i < loads.size(); ++i)

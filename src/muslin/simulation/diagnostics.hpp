@@ -20,6 +20,9 @@ struct Diagnostics {
   double time = 0;
   double kinetic = 0, elastic = 0, potential = 0;
   double work = 0;        ///< external work since the start (forces, wind, moving pins)
+  /// Share of `work` that changes of the material's numbers did, by keyframes or on a resume: the change of
+  /// the elastic energy at the positions of that time.
+  double material_work = 0;
   double dissipated = 0;  ///< lost since the start, by damping, internal friction and the integrator
   Vec3 momentum = Vec3::Zero();
   int newton_iterations = 0, linear_iterations = 0;  ///< of this frame
@@ -52,6 +55,7 @@ struct Diagnostics {
     arrays("diagnostics.elastic", self.elastic);
     arrays("diagnostics.potential", self.potential);
     arrays("diagnostics.work", self.work);
+    arrays("diagnostics.material_work", self.material_work);
     arrays("diagnostics.dissipated", self.dissipated);
     arrays("diagnostics.momentum", self.momentum);
     arrays("diagnostics.newton_iterations", self.newton_iterations);

@@ -23,6 +23,9 @@ inline bool is_stored(EnergyRole role) {
   return role == EnergyRole::elastic || role == EnergyRole::potential;
 }
 
+/// True if a load of this role sets bodies in motion.
+inline bool drives(EnergyRole role) { return role == EnergyRole::potential || role == EnergyRole::work; }
+
 /// A potential of the step, with its role in the balance.
 struct ActingPotential {
   EnergyRole role = EnergyRole::elastic;

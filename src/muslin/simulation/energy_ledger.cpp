@@ -12,6 +12,13 @@ std::vector<std::unique_ptr<Potential>> Terms::potentials_of_loads(const StepCon
   return found;
 }
 
+std::vector<std::unique_ptr<Potential>> Terms::driving_potentials(const StepContext& context) const {
+  std::vector<std::unique_ptr<Potential>> found;
+  for (const LoadTerm& term : loads)
+    found.push_back(drives(term.role) ? term.load->potential(context) : nullptr);
+  return found;
+}
+
 std::vector<std::uint64_t> Terms::keys() const {
   std::vector<std::uint64_t> keys;
   for (const PotentialTerm& term : potentials) keys.push_back(hash_bytes(term.name.data(), term.name.size()));
@@ -51,12 +58,9 @@ std::vector<Vec3> EnergyLedger::enter(const Terms& acting, SolvedStep step,
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const std::size_t slot = acting.potentials.size() + i;
     const EnergyRole role = acting.role(slot);
-    if (is_stored(role)) {
-      // A field that is switched or turned while a body is in it does work on the body.
-      const double begin = loads[i] ? loads[i]->value(before) : 0.0;
-      work += begin - stored[slot];
-      stored[slot] = begin;
-    }
+    // A field that is switched or turned while a body is in it does work on the body, and so does a material
+    // that stiffens.
+    if (is_stored(role)) change(slot, role, loads[i] ? loads[i]->value(before) : 0.0);
     if (!loads[i]) continue;
     ActingPotential act{role, loads[i].get(), stored[slot]};
     const double lost = is_stored(role) ? loads[i]->dissipated(after) : 0;
@@ -92,11 +96,16 @@ void EnergyLedger::go_on_with(const Terms& acting, ConstVectors positions) {
   for (std::size_t j = 0; j < earlier.size(); ++j)
     if (!used[j]) work -= earlier[j];
   for (std::size_t i = 0; i < acting.potentials.size(); ++i) {
-    if (!is_stored(acting.potentials[i].role)) continue;
-    const double now = acting.potentials[i].potential->value(positions);
-    work += now - stored[i];
-    stored[i] = now;
+    const PotentialTerm& term = acting.potentials[i];
+    if (is_stored(term.role)) change(i, term.role, term.potential->value(positions));
   }
+}
+
+void EnergyLedger::change(std::size_t slot, EnergyRole role, double now) {
+  const double done = now - stored[slot];
+  work += done;
+  if (role == EnergyRole::elastic) material_work += done;
+  stored[slot] = now;
 }
 
 }  // namespace muslin

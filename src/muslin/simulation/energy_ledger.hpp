@@ -29,6 +29,8 @@ struct Terms {
   }
   /// Returns the potential of each load in a step; null where it does not act.
   std::vector<std::unique_ptr<Potential>> potentials_of_loads(const StepContext& context) const;
+  /// Likewise of the loads that drive; null of all others.
+  std::vector<std::unique_ptr<Potential>> driving_potentials(const StepContext& context) const;
   /// Returns hashes of the names, #slots.
   std::vector<std::uint64_t> keys() const;
 };
@@ -37,6 +39,7 @@ struct Terms {
 struct EnergyLedger {
   double work = 0, dissipated = 0;   ///< since the start [J]
   double unbalanced = 0;             ///< since the start [J]
+  double material_work = 0;          ///< share of `work` by changes of the material's numbers [J]
   double contact_energy = 0;         ///< [J]
   std::vector<std::uint64_t> terms;  ///< the terms of `stored`, by Terms::keys
   std::vector<double> stored;        ///< energy of each, 0 for roles that store none [J]
@@ -46,6 +49,7 @@ struct EnergyLedger {
     arrays("energy.work", self.work);
     arrays("energy.dissipated", self.dissipated);
     arrays("energy.unbalanced", self.unbalanced);
+    arrays("energy.material_work", self.material_work);
     arrays("energy.pressed", self.contact_energy);
     arrays("energy.terms", self.terms);
     arrays("energy.stored", self.stored);
@@ -54,7 +58,7 @@ struct EnergyLedger {
   /// Returns the energy that all terms of one role store, without contact [J].
   double sum(const Terms& acting, EnergyRole role) const;
 
-  /// Records the energy stored at `positions`, with fields as in the step of `context`.
+  /// Records the energy stored at `positions`, with fields and numbers as in the step of `context`.
   void measure(const Terms& acting, const StepContext& context, ConstVectors positions);
 
   /// Adds a step; `step.acts` is filled in here. `loads`: the potentials of the loads in the step. `contact`:
@@ -65,6 +69,10 @@ struct EnergyLedger {
   /// Continues with other terms, from `positions`: the energy of terms with the same name is kept; the change
   /// of energy counts as work.
   void go_on_with(const Terms& acting, ConstVectors positions);
+
+ private:
+  /// Sets the energy stored by a term that has changed at constant positions; the change is work.
+  void change(std::size_t slot, EnergyRole role, double now);
 };
 
 }  // namespace muslin

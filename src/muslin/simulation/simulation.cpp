@@ -67,7 +67,7 @@ int Simulation::Impl::choose_level() {
   const StepContext context =
       step_context(model->scene.solver.integrator, state.motion, 1 / time().frame_rate);
   const std::vector<double> accelerations = driving_accelerations(
-      *model, terms(), terms().potentials_of_loads(context), state.motion.positions, scratch);
+      *model, terms(), terms().driving_potentials(context), state.motion.positions, scratch);
   return state.control.choose(scratch.parts, accelerations, scratch.masses, state.motion,
                               1 / time().frame_rate, model->scene.solver.effort_at(state.motion.time));
 }
@@ -90,7 +90,8 @@ void Simulation::Impl::touch(bool leave_free) {
 }
 
 void Simulation::Impl::measure_energy() {
-  const StepContext context = step_context(model->scene.solver.integrator, state.motion, time().step());
+  StepContext context = step_context(model->scene.solver.integrator, state.motion, time().step());
+  context.time_end = context.time_begin;  // numbers that change are those of now
   state.energy.measure(terms(), context, state.motion.positions);
 }
 
@@ -134,6 +135,7 @@ void Simulation::Impl::describe_state(Diagnostics& row) const {
   row.elastic = energy.sum(terms(), EnergyRole::elastic) + energy.contact_energy;
   row.potential = energy.sum(terms(), EnergyRole::potential);
   row.work = energy.work;
+  row.material_work = energy.material_work;
   row.dissipated = energy.dissipated;
   row.unbalanced = energy.unbalanced;
   row.momentum = total_momentum(model->masses, state.motion.velocities);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "muslin/component/body_mesh.hpp"
+#include "muslin/component/changing_terms.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/component/solid.hpp"
 #include "muslin/core/progress_part.hpp"
@@ -14,6 +15,7 @@
 #include "muslin/energy/volume_energy.hpp"
 #include "muslin/field/signed_distance.hpp"
 #include "muslin/geometry/thicken.hpp"
+#include "muslin/material/keyed_material.hpp"
 #include "muslin/potential/mass_damping.hpp"
 
 namespace muslin {
@@ -21,6 +23,8 @@ namespace {
 
 // Above this the run is long and takes several GiB; the user is warned.
 constexpr std::size_t many_voxels = 2'000'000;
+
+void add_lattice_terms(LatticeBody& body);
 
 class LatticeBuilder {
  public:
@@ -35,7 +39,7 @@ class LatticeBuilder {
     at_place(settings_.place, inputs_.files.resolve(settings_.mesh).string(),
              [&] { fill(inputs_.progress); });
     weigh(body_);
-    add_terms();
+    add_lattice_terms(body_);
     return built_;
   }
 
@@ -120,6 +124,17 @@ class LatticeBuilder {
     }
   }
 
+  const BodySettings& settings_;
+  const LatticeBodySettings& own_;
+  const ComponentInputs& inputs_;
+  std::shared_ptr<LatticeBody> built_ = std::make_shared<LatticeBody>();
+  LatticeBody& body_ = *built_;
+};
+
+class LatticeTerms {
+ public:
+  explicit LatticeTerms(LatticeBody& body) : settings_(body.settings), own_(body.own()), body_(body) {}
+
   void add_terms() {
     const Material& material = settings_.material;
     const std::array moduli = {material.edge_modulus, material.face_diagonal_modulus,
@@ -134,8 +149,8 @@ class LatticeBuilder {
       add_blocks(*solid, 4);
       damping = std::make_shared<ElementDamping>(solid, material.stiffness_damping);
     } else {
-      const auto springs =
-          std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli, spring_weights());
+      const auto springs = std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli,
+                                                          spring_weights(), body_.network);
       body_.potentials.push_back({"springs", EnergyRole::elastic, springs});
       add_blocks(*springs, 2);
       damping = std::make_shared<SpringDamping>(springs, material.stiffness_damping);
@@ -162,6 +177,7 @@ class LatticeBuilder {
     return {};
   }
 
+ private:
   void add_blocks(const Potential& potential, double vertices_of_element) {
     std::vector<Mat3> blocks(body_.lattice.vertex_count(), Mat3::Zero());
     std::vector<Vec3> rest(blocks.size());
@@ -173,11 +189,31 @@ class LatticeBuilder {
 
   const BodySettings& settings_;
   const LatticeBodySettings& own_;
-  const ComponentInputs& inputs_;
-  std::shared_ptr<LatticeBody> built_ = std::make_shared<LatticeBody>();
-  LatticeBody& body_ = *built_;
+  LatticeBody& body_;
   std::vector<Mat3> blocks_;
 };
+
+void add_lattice_terms(LatticeBody& body) {
+  const schema::Variations& variations = body.settings.material.variations;
+  const std::vector<double> times = keyframe_times(variations);
+  if (times.empty()) return LatticeTerms(body).add_terms();
+  if (body.settings.material.has_springs())
+    body.network =
+        SpringEnergy(body.springs, body.lattice.width, {}, LatticeTerms(body).spring_weights()).network();
+  // The terms belong to this body and live as long as it does.
+  add_changing_terms(body, {times, [&variations](double time) { return keyed_numbers(variations, time); },
+                            [&body](double time) {
+                              const auto at_time = std::make_shared<LatticeBody>();
+                              at_time->statistics = body.statistics;
+                              at_time->settings = body.settings;
+                              at_time->settings.material = material_at(body.settings.material, time);
+                              at_time->lattice = body.lattice;
+                              at_time->springs = body.springs;
+                              at_time->network = body.network;
+                              LatticeTerms(*at_time).add_terms();
+                              return at_time;
+                            }});
+}
 
 }  // namespace
 

@@ -15,6 +15,7 @@
 #include "muslin/component/lattice/lattice_body_settings.hpp"
 #include "muslin/lattice/lattice.hpp"
 #include "muslin/lattice/springs.hpp"
+#include "muslin/potential/spring_network.hpp"
 #include "muslin/surface/contour.hpp"
 
 namespace muslin {
@@ -28,6 +29,7 @@ class LatticeBody final : public Component {
   Lattice lattice;
   Springs springs;
   Contour contour;
+  std::shared_ptr<const SpringNetwork> network;  ///< of springs whose stiffness changes; null: none
 
   std::string kind() const override { return "lattice"; }
   Vec3 rest_position(std::size_t v) const override { return lattice.rest_position(v); }

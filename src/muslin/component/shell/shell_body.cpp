@@ -99,18 +99,9 @@ std::uint64_t ShellBody::shape_hash(std::uint64_t seed) const {
 
 std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
   const ShellMaterial& m = material();
-  const std::array numbers = {m.areal_density,     m.membrane_warp,   m.membrane_weft,
-                              m.membrane_shear,    m.poisson,         m.bending_warp,
-                              m.bending_weft,      m.bending_bias,    m.mass_damping,
-                              m.stiffness_damping, m.bending_damping, static_cast<double>(own().compression)};
+  const std::array numbers = {m.areal_density, static_cast<double>(own().compression)};
   std::uint64_t hash =
       hash_bytes(numbers.data(), sizeof numbers, muslin::material_hash(settings.material, 0, seed));
-  std::uint64_t place = 0;
-  for (const auto* curve :
-       {&m.warp_curve, &m.weft_curve, &m.shear_curve, &m.bending_warp_curve, &m.bending_weft_curve}) {
-    ++place;
-    if (*curve) hash = hash_bytes((*curve)->data(), (*curve)->size() * sizeof(Vec2), hash + place);
-  }
   if (has_bending_friction(m)) {
     const std::array friction = {m.bending_friction_warp, m.bending_friction_weft,
                                  m.bending_friction_curvature};

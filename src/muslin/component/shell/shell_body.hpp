@@ -15,6 +15,7 @@
 #include "muslin/component/body_settings.hpp"
 #include "muslin/component/component.hpp"
 #include "muslin/component/shell/shell_body_settings.hpp"
+#include "muslin/potential/symmetric_pattern.hpp"
 #include "muslin/shell/shell.hpp"
 
 namespace muslin {
@@ -23,6 +24,7 @@ class ShellBody final : public Component {
  public:
   BodySettings settings;  ///< with numbers of a shell in `material`
   Shell shell;
+  std::shared_ptr<const SymmetricPattern> pattern;  ///< of the pairs of vertices that terms couple
 
   std::string kind() const override { return "shell"; }
   void add_terms(std::span<const std::uint8_t> held) override;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "muslin/component/changing_terms.hpp"
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/energy/bending_friction.hpp"
 #include "muslin/energy/element_energy.hpp"
@@ -13,6 +14,7 @@
 #include "muslin/energy/plastic_bending.hpp"
 #include "muslin/energy/shell_bending.hpp"
 #include "muslin/energy/stretch_limit.hpp"
+#include "muslin/material/keyed_material.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/potential/mass_damping.hpp"
 
@@ -26,7 +28,8 @@ class ShellTerms {
 
   void add(std::span<const std::uint8_t> held) {
     const ShellMaterial& m = material_;
-    const auto pattern = block_pattern(body_.shell);
+    if (!body_.pattern) body_.pattern = block_pattern(body_.shell);
+    const auto pattern = body_.pattern;
     const auto membrane = membrane_on(pattern);
     add("membrane", membrane);
     // The stable step is that of the stiffest state.
@@ -127,6 +130,27 @@ class ShellTerms {
 
 }  // namespace
 
-void ShellBody::add_terms(std::span<const std::uint8_t> held) { ShellTerms(*this).add(held); }
+void ShellBody::add_terms(std::span<const std::uint8_t> held) {
+  const schema::Variations& variations = material().variations;
+  const std::vector<double> times = keyframe_times(variations);
+  if (times.empty()) return ShellTerms(*this).add(held);
+  pattern = block_pattern(shell);
+  // The terms belong to this body and live as long as it does.
+  add_changing_terms(*this,
+                     {times, [&variations](double time) { return keyed_numbers(variations, time); },
+                      [this, always_held = std::vector<std::uint8_t>(held.begin(), held.end())](double time) {
+                        const auto at_time = std::make_shared<ShellBody>();
+                        at_time->name = name;
+                        at_time->mesh = mesh;
+                        at_time->vertex_count = vertex_count;
+                        at_time->statistics = statistics;
+                        at_time->settings = settings;
+                        at_time->settings.material.shell = material_at(material(), time);
+                        at_time->shell = shell;
+                        at_time->pattern = pattern;
+                        ShellTerms(*at_time).add(always_held);
+                        return at_time;
+                      }});
+}
 
 }  // namespace muslin
