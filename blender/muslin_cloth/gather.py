@@ -10,6 +10,7 @@ import numpy as np
 
 from . import axes, point_cache
 from .advice import ERROR, INFO, WARNING, Notice, counted, suggest_width
+from .force_fields import Fields, along_z, field_objects, fields_notices, has_falloff, unit_scale
 from .playback import modifier_of
 from .scene_text import Cloth, Collider, SceneInput, Wind, body_names, obj_text, scene_toml
 
@@ -30,10 +31,6 @@ def collider_objects(scene):
     return [o for o in scene.objects if o.type == "MESH" and o.muslin.role == "COLLIDER"]
 
 
-def field_objects(scene):
-    return [o for o in scene.objects if o.field and o.field.type != "NONE" and o.visible_get()]
-
-
 def own_friction(obj):
     """None if the scene's setting applies."""
     return obj.muslin.friction if obj.muslin.use_friction else None
@@ -41,10 +38,6 @@ def own_friction(obj):
 
 def frame_rate(scene):
     return scene.render.fps / scene.render.fps_base
-
-
-def unit_scale(scene):
-    return scene.unit_settings.scale_length
 
 
 def depsgraph_of(scene):
@@ -189,20 +182,8 @@ def notices_of(obj, taken):
     return notices
 
 
-def fields_notices(scene):
-    notices = []
-    for obj in field_objects(scene):
-        field = obj.field
-        if field.type not in ("WIND", "TURBULENCE"):
-            notices.append(Notice(INFO, f"Its force field ({field.type.title()}) is ignored: muslin supports only Wind and "
-                                        "Turbulence", obj.name))
-        elif field.falloff_power > 0 or field.use_max_distance or field.use_min_distance:
-            notices.append(Notice(INFO, "Its falloff is ignored: the wind is the same everywhere", obj.name))
-    return notices
-
-
 class Air:
-    """Combines wind and turbulence fields into one velocity of the air [m/s]."""
+    """Combines the wind and turbulence fields that are the same everywhere into one velocity of the air [m/s]."""
 
     def __init__(self, scene):
         self.velocities, self.gust, self.gust_length, self.seed = [], 0.0, 0.0, 1
@@ -215,15 +196,13 @@ class Air:
             evaluated = obj.evaluated_get(depsgraph)
             field = evaluated.field
             if field.type == "WIND":
-                along = np.array(evaluated.matrix_world)[:3, 2]
-                length = np.linalg.norm(along)
-                if length > 0:
-                    velocity += field.strength * scale * along / length
+                if not has_falloff(field):
+                    velocity += field.strength * scale * along_z(evaluated)
                 square += (field.noise * field.strength * scale) ** 2
                 if field.noise:
                     self.gust_length = max(self.gust_length, 1.0)
                     self.seed = field.seed
-            elif field.type == "TURBULENCE":
+            elif field.type == "TURBULENCE" and not has_falloff(field):
                 square += (field.strength * scale) ** 2
                 self.gust_length = max(self.gust_length, field.size * scale)
                 self.seed = field.seed
@@ -312,7 +291,7 @@ class Capture:
         self.cloths = [o.name for o in cloth_objects(scene)]
         self.matrices = {name: [] for name in self.cloths}
         self.snapshots, self.writers, self.moves = {}, {}, {}
-        self.air = Air(scene)
+        self.air, self.fields = Air(scene), Fields(scene)
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def scene(self):
@@ -373,6 +352,7 @@ class Capture:
     def _sample(self, scene):
         depsgraph = depsgraph_of(scene)
         self.air.sample(depsgraph)
+        self.fields.sample(depsgraph)
         for name, body in self.names.items():
             obj = scene.objects.get(name)
             if obj is None:
@@ -417,7 +397,7 @@ class Capture:
                 if part.name == body:
                     part.sequence = target.name
         self.writers = {}
-        self.input.wind = self.air.wind()
+        self.input.wind, self.input.fields = self.air.wind(), self.fields.all()
         self.write_meshes(self.folder)
         (self.folder / "scene.toml").write_text(scene_toml(self.input), encoding="utf-8")
         objects = []

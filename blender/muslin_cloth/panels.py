@@ -8,7 +8,8 @@ from bpy.types import Panel
 from . import bake_state as bs
 from . import fabrics
 from .advice import ERROR, WARNING, counted, estimate_voxels, split_problem
-from .gather import cloth_objects, fields_notices, unit_scale
+from .force_fields import fields_notices, unit_scale
+from .gather import cloth_objects
 from .playback import modifier_of, own_folder
 from .session import baking
 

@@ -2,7 +2,7 @@
 (axes.py). No Blender needed."""
 
 from dataclasses import dataclass, field
-from typing import List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
@@ -44,6 +44,18 @@ class Wind:
 
 
 @dataclass
+class Field:
+    """A field of vectors or a drag: a [[force]] of this type."""
+    type: str  # "uniform" | "radial" | "vortex" | "turbulence" | "drag"
+    strengths: List[float]  # one, or one a frame [m/s or m/s²]; of a drag none
+    acts_as: str = ""  # "wind" | "acceleration"; of a drag none
+    center: Vec = (0.0, 0.0, 0.0)  # [m]
+    falloff: Dict[str, float] = field(default_factory=dict)  # its keys; empty: none
+    vectors: Dict[str, Vec] = field(default_factory=dict)  # further keys of the type
+    numbers: Dict[str, float] = field(default_factory=dict)
+
+
+@dataclass
 class SceneInput:
     title: str
     frames: int  # last frame, from 0
@@ -52,6 +64,7 @@ class SceneInput:
     gravity: Vec = (0.0, 0.0, 0.0)  # [m/s²]
     air_density: float = keys.default("force", "air_density")  # [kg/m³]; 0: no air
     wind: Optional[Wind] = None
+    fields: List[Field] = field(default_factory=list)
     cloths: List[Cloth] = field(default_factory=list)
     colliders: List[Collider] = field(default_factory=list)
     contact: bool = True  # of cloth with itself, with other cloth and with colliders
@@ -116,6 +129,9 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
         lines += ["", "[[force]]", 'type = "gravity"', f"acceleration = {vector(scene.gravity)}"]
     if scene.air_density > 0:
         lines += ["", "[[force]]", 'type = "wind"'] + _wind(scene)
+    for each in scene.fields:
+        if each.acts_as != "wind" or scene.air_density > 0:
+            lines += ["", "[[force]]", f"type = {quoted(each.type)}"] + _field(each, scene.frame_rate)
     return "\n".join(lines) + "\n"
 
 
@@ -156,6 +172,22 @@ def _wind(scene):
         lines.append(f"keyframes = [\n{keys},\n]")
     if wind.gust > 0:
         lines += [f"gust = {number(wind.gust)}", f"gust_length = {number(wind.gust_length)}", f"seed = {wind.seed}"]
+    return lines
+
+
+def _field(each, frame_rate):
+    lines = [f"acts_as = {quoted(each.acts_as)}"] if each.acts_as else []
+    if each.strengths and all(s == each.strengths[0] for s in each.strengths):
+        lines.append(f"strength = {number(each.strengths[0])}")
+    elif each.strengths:
+        keyframes = ", ".join(f"{{ time = {number(f / frame_rate)}, value = {number(s)} }}"
+                              for f, s in enumerate(each.strengths))
+        lines.append(f"strength = {{ keyframes = [{keyframes}] }}")
+    lines.append(f"center = {vector(each.center)}")
+    if each.falloff:
+        lines.append("falloff = { " + ", ".join(f"{key} = {number(x)}" for key, x in each.falloff.items()) + " }")
+    lines += [f"{key} = {vector(v)}" for key, v in each.vectors.items()]
+    lines += [f"{key} = {x if isinstance(x, int) else number(x)}" for key, x in each.numbers.items()]
     return lines
 
 

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
@@ -143,13 +144,44 @@ class Baking(HostTest):
         for frame, strength in ((1, 8.0), (6, 16.0)):
             wind.field.strength = strength
             wind.field.keyframe_insert("strength", frame=frame)
-        bpy.ops.object.effector_add(type="VORTEX")
+        bpy.ops.object.effector_add(type="HARMONIC")
         bpy.ops.muslin.bake()
         text = (self.bake / "scene.toml").read_text()
         self.assertIn("keyframes", text)
         self.assertNotIn("gravity", text)
         self.assertLess(points(obj, 6)[:, 1].min(), -0.01)
-        self.assertTrue(any("Vortex" in n.text for n in session().notices))
+        self.assertTrue(any("Harmonic" in n.text for n in session().notices))
+
+    def test_force_fields_are_fields_of_muslin(self):
+        scene = bpy.context.scene
+        obj = cloth(grid())
+        scene.use_gravity = False
+        bpy.ops.object.effector_add(type="FORCE", location=(0, 0, -3))
+        force = bpy.context.object
+        for frame, strength in ((1, 30.0), (6, 60.0)):
+            force.field.strength = strength
+            force.field.keyframe_insert("strength", frame=frame)
+        force.field.falloff_power, force.field.use_max_distance, force.field.distance_max = 1, True, 20
+        bpy.ops.object.effector_add(type="VORTEX", location=(1, 2, 3), rotation=(np.pi / 2, 0, 0))
+        bpy.context.object.field.strength = 2
+        bpy.ops.object.effector_add(type="DRAG")
+        bpy.context.object.field.linear_drag = 0.5
+        bpy.ops.object.effector_add(type="WIND")
+        bpy.context.object.field.strength, bpy.context.object.field.falloff_power = 3, 2
+        bpy.ops.muslin.bake()
+        told = tomllib.loads((self.bake / "scene.toml").read_text())["force"]
+        self.assertEqual([f["type"] for f in told], ["wind", "radial", "vortex", "drag", "uniform"])
+        wind, radial, vortex, drag, uniform = told
+        self.assertEqual(wind["velocity"], [0, 0, 0])
+        self.assertEqual(radial["acts_as"], "acceleration")
+        self.assertEqual(radial["center"], [0, -3, 0])
+        self.assertEqual(radial["falloff"], {"power": 1, "min": 0, "length": 1, "max": 20})
+        self.assertEqual(radial["strength"]["keyframes"][0], {"time": 0, "value": 30})
+        np.testing.assert_allclose(vortex["center"], [1, 3, -2], atol=1e-6)
+        np.testing.assert_allclose(vortex["axis"], [0, 0, 1], atol=1e-6)  # Blender's -y
+        self.assertEqual(drag["linear"], 0.5)
+        np.testing.assert_allclose(uniform["direction"], [0, 1, 0], atol=1e-6)
+        self.assertGreater(points(obj, 6)[:, 2].mean() - points(obj, 1)[:, 2].mean(), 0.01, "pushed up")
 
     def test_a_run_plays_without_the_add_on(self):
         """docs/guide/blender.md: import the mesh, add a Mesh Cache modifier by hand."""

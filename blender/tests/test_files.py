@@ -173,6 +173,26 @@ class SceneText(Scratch):
             self.assertEqual(told["pins"][0]["vertices"], 2)
             self.assertEqual([f["type"] for f in told["forces"]], ["gravity", "wind"])
 
+    def test_the_program_reads_fields(self):
+        scene = self.scene()
+        falloff = {"power": 2.0, "min": 0.5, "length": 1.0, "max": 9.0}
+        scene.fields = [
+            scene_text.Field("radial", [3, 4], "acceleration", (0, -1, 0), falloff),
+            scene_text.Field("vortex", [2, 2], "wind", vectors={"axis": (0, 0, 1)}, numbers={"radius": 1.0}),
+            scene_text.Field("uniform", [2], "wind", vectors={"direction": (0, 0, 1)}),
+            scene_text.Field("turbulence", [1], "wind", numbers={"largest": 0.5, "seed": 3}),
+            scene_text.Field("drag", [], numbers={"linear": 0.5, "quadratic": 0.0})]
+        code, out, err = self.check(scene)
+        self.assertEqual((code, err), (0, ""))
+        self.assertEqual([f["type"] for f in json.loads(out)["forces"]][2:], [f.type for f in scene.fields])
+        told = tomllib.loads(scene_text.scene_toml(scene))["force"][2:]
+        self.assertEqual(told[0]["falloff"], falloff)
+        self.assertEqual([k["value"] for k in told[0]["strength"]["keyframes"]], [3, 4])
+        self.assertEqual((told[1]["strength"], told[1]["axis"], told[3]["seed"]), (2, [0, 0, 1], 3))
+        scene.air_density = 0  # a vacuum has no air to move
+        told = tomllib.loads(scene_text.scene_toml(scene))["force"][1:]
+        self.assertEqual([f["type"] for f in told], ["radial", "drag"])
+
     def test_it_says_what_was_asked(self):
         scene = self.scene()
         told = tomllib.loads(scene_text.scene_toml(scene))
