@@ -147,7 +147,8 @@ void check_yield(const ShellMaterial& m, const schema::Subject& subject) {
                         "give `bending_warp` more than 0");
 }
 
-/// Lets the numbers change on a resume that decide neither masses nor the memory of internal friction and creases.
+/// Lets the numbers change on a resume that decide neither masses nor the memory of internal friction and of
+/// creases.
 void let_sheet_change(schema::Table& table) {
   for (schema::Key& key : table.keys) {
     if (key.name == "areal_density" || key.name.starts_with("bending_friction") ||
