@@ -20,7 +20,7 @@ void add_check(CLI::App& program) {
   command->add_option("FILE", a->file, "scene (.toml) or mesh file")->required();
   command->add_flag("--json", a->json, "print JSON");
   command->add_option("--picture", a->picture,
-                      "write FILE.png of the start of a scene with crossings marked");
+                      "write FILE.png of the start of a scene with crossings marked, and of its maps");
   command->add_option("--set", a->set, "KEY=VALUE overrides a setting of the scene")->allow_extra_args(false);
   command->callback([a] {
     listen_for_interrupts();

@@ -15,6 +15,7 @@ set(MUSLIN_PUBLIC_HEADERS
     component/component_source.hpp
     component/contact_part.hpp
     component/lattice/lattice_body_settings.hpp
+    component/mapped_number.hpp
     component/scene_files.hpp
     component/selection.hpp
     component/shell/shell_body_settings.hpp

@@ -21,11 +21,12 @@ void warn_of_body(const ComponentInputs& inputs, const std::string& body, const 
   inputs.warnings.push_back(fmt::format("body {}: {}", body, sentence));
 }
 
-void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, Component& component) {
+std::vector<VertexAttribute> read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs,
+                                            Component& component) {
   component.name = settings.name;
   inputs.progress.at(0.0, "mesh");
   const std::string file = inputs.files.resolve(settings.mesh).string();
-  at_place(settings.mesh_place, file, [&] {
+  return at_place(settings.mesh_place, file, [&] {
     MeshFile read = inputs.files.mesh(settings.mesh);
     if (!read.note.empty()) warn_of_body(inputs, settings.name, read.note);
     component.mesh = std::move(read.mesh);
@@ -34,6 +35,7 @@ void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs,
     require_usable(component.mesh, file);
     component.report = inspect(component.mesh);
     for (const std::string& warning : component.report.warnings) warn_of_body(inputs, settings.name, warning);
+    return std::move(read.attributes);
   });
 }
 

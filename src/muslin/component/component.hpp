@@ -22,6 +22,7 @@
 #include "muslin/api.hpp"
 #include "muslin/component/component_source.hpp"
 #include "muslin/component/contact_part.hpp"
+#include "muslin/component/mapped_number.hpp"
 #include "muslin/component/selection.hpp"
 #include "muslin/component/terms.hpp"
 #include "muslin/constraint/prescribed.hpp"
@@ -84,6 +85,7 @@ class MUSLIN_API Component {
   int first_vertex = 0;  ///< its vertices are first_vertex … first_vertex + vertex_count − 1 of the state
   int vertex_count = 0;
   BodyStatistics statistics;
+  std::vector<MappedNumber> maps;  ///< numbers that vary over the vertices of `mesh`
   /// Over its vertices; in output their names follow the component's. Potentials are added to the solver's
   /// list in this order.
   std::vector<PotentialTerm> potentials;

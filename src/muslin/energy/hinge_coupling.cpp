@@ -39,6 +39,19 @@ Mat3 plate_rigidity(const BendingModuli& m) {
   return d + least_rigidity / 3 * d.trace() * Mat3::Identity();
 }
 
+/// By triangle, or one for all. One without stiffness among others has the least share of the stiffest.
+std::vector<Mat3> plate_rigidities(std::span<const BendingModuli> moduli) {
+  std::vector<Mat3> rigidities;
+  double stiffest = 0;
+  for (const BendingModuli& m : moduli) {
+    rigidities.push_back(plate_rigidity(m));
+    stiffest = std::max(stiffest, rigidities.back().trace());
+  }
+  for (Mat3& rigidity : rigidities)
+    if (rigidity.trace() == 0) rigidity = least_rigidity / 3 * stiffest * Mat3::Identity();
+  return rigidities;
+}
+
 /// The side of a triangle opposite a corner, in the triangle's (warp, weft).
 struct Side {
   int edge = 0;
@@ -66,8 +79,8 @@ struct Row {
 
 class Coupler {
  public:
-  Coupler(const Shell& shell, const BendingModuli& moduli, std::span<const std::uint8_t> held)
-      : shell_(shell), rigidity_(plate_rigidity(moduli)) {
+  Coupler(const Shell& shell, std::span<const BendingModuli> moduli, std::span<const std::uint8_t> held)
+      : shell_(shell), rigidities_(plate_rigidities(moduli)) {
     find_edges(held);
     find_triangles();
   }
@@ -167,7 +180,7 @@ class Coupler {
     compliance_.resize(count);
     for (std::size_t t = 0; t < count; ++t) {
       const Mat3 inverse = normals_of(t).inverse();
-      compliance_[t] = shell_.areas[t] * inverse.transpose() * rigidity_.inverse() * inverse;
+      compliance_[t] = shell_.areas[t] * inverse.transpose() * rigidity_of(t).inverse() * inverse;
       stiffness_[t].setZero();
       if (held_[t]) {
         compliance_[t].setZero();
@@ -285,9 +298,11 @@ class Coupler {
          second = turn_by_curvature(side_of(edge.sides[1]));
     second[2] = -second[2];
     const double areas = shell_.areas[at(edge.sides[0].triangle)] + shell_.areas[at(edge.sides[1].triangle)];
+    const double trace = 0.5 * (rigidity_of(at(edge.sides[0].triangle)).trace() +
+                                rigidity_of(at(edge.sides[1].triangle)).trace());
     // Few rows: products for large matrices would take longer, also to compile.
-    const Mat3 normal = by_curvature.transpose().lazyProduct(weighted) +
-                        ridge * areas * rigidity_.trace() / 3 * Mat3::Identity();
+    const Mat3 normal =
+        by_curvature.transpose().lazyProduct(weighted) + ridge * areas * trace / 3 * Mat3::Identity();
     return weighted.lazyProduct(normal.ldlt().solve(0.5 * (first - second)));
   }
 
@@ -449,8 +464,10 @@ class Coupler {
     return coupling;
   }
 
+  const Mat3& rigidity_of(std::size_t t) const { return rigidities_[rigidities_.size() > 1 ? t : 0]; }
+
   const Shell& shell_;
-  Mat3 rigidity_;
+  std::vector<Mat3> rigidities_;  // by triangle, or one for all
   std::vector<Edge> edges_;
   std::vector<std::array<Side, 3>> sides_;    // by triangle and opposite corner
   std::vector<char> held_;                    // by triangle
@@ -477,16 +494,23 @@ std::vector<double> HingeCoupling::times(std::span<const double> d) const {
 
 HingeCoupling couple_hinges(const Shell& shell, const BendingModuli& moduli,
                             std::span<const std::uint8_t> held) {
+  return couple_hinges(shell, std::span(&moduli, 1), held);
+}
+
+HingeCoupling couple_hinges(const Shell& shell, std::span<const BendingModuli> moduli,
+                            std::span<const std::uint8_t> held) {
   HingeCoupling none;
   none.first.assign(shell.hinges.size() + 1, 0);
   none.lumped.assign(shell.hinges.size(), 0.0);
-  const bool stiff = moduli.warp != 0 || moduli.weft != 0 || moduli.bias != 0;
+  const bool stiff = std::any_of(moduli.begin(), moduli.end(), [](const BendingModuli& m) {
+    return m.warp != 0 || m.weft != 0 || m.bias != 0;
+  });
   return stiff ? Coupler(shell, moduli, held).couple() : none;
 }
 
 PlateCurvatures plate_curvatures(const Shell& shell, const BendingModuli& moduli,
                                  std::span<const std::uint8_t> held) {
-  return Coupler(shell, moduli, held).curvatures();
+  return Coupler(shell, std::span(&moduli, 1), held).curvatures();
 }
 
 EvenCurvatures even_curvatures(const Shell& shell, const BendingModuli& moduli,

@@ -37,6 +37,11 @@ MembraneLaw::Constants constants_of(const PlaneModuli& m, const BucklingRigidity
   return {m.c11, m.c12, m.c22, m.g, buckling_load(rigidity.warp), buckling_load(rigidity.weft)};
 }
 
+/// By triangle, one for all, or none.
+BucklingRigidity rigidity_at(std::span<const BucklingRigidity> rigidities, std::size_t t) {
+  return rigidities.empty() ? BucklingRigidity{} : rigidities[rigidities.size() > 1 ? t : 0];
+}
+
 TriangleStencil stencil_of(const ElementSlabs<3>& slabs, const Shell& shell,
                            const std::vector<PlaneModuli>& moduli, bool bounded) {
   TriangleStencil stencil(slabs, shell);
@@ -47,25 +52,28 @@ TriangleStencil stencil_of(const ElementSlabs<3>& slabs, const Shell& shell,
 }  // namespace
 
 MembraneEnergy::MembraneEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
-                               const std::vector<PlaneModuli>& moduli, const BucklingRigidity& rigidity,
+                               const std::vector<PlaneModuli>& moduli,
+                               std::span<const BucklingRigidity> rigidities,
                                std::shared_ptr<const SymmetricPattern> pattern)
     : Elements(
           slabs, stencil_of(*slabs, shell, moduli, pattern != nullptr),
-          LawConstants<MembraneLaw>(*slabs, [&](std::size_t t) { return constants_of(moduli[t], rigidity); }),
+          LawConstants<MembraneLaw>(
+              *slabs, [&](std::size_t t) { return constants_of(moduli[t], rigidity_at(rigidities, t)); }),
           pattern) {}
 
 MembraneEnergy::MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
                                std::shared_ptr<const SymmetricPattern> pattern,
                                const BucklingRigidity& rigidity)
     : MembraneEnergy(triangle_slabs(shell), shell,
-                     std::vector<PlaneModuli>(shell.triangles.size(), plane_moduli(moduli)), rigidity,
-                     std::move(pattern)) {}
+                     std::vector<PlaneModuli>(shell.triangles.size(), plane_moduli(moduli)),
+                     std::span(&rigidity, 1), std::move(pattern)) {}
 
 MembraneEnergy::MembraneEnergy(const Shell& shell, std::span<const MembraneModuli> moduli,
                                std::shared_ptr<const SymmetricPattern> pattern,
-                               const BucklingRigidity& rigidity)
-    : MembraneEnergy(triangle_slabs(shell), shell, plane_moduli(moduli), rigidity, std::move(pattern)) {
+                               std::span<const BucklingRigidity> rigidities)
+    : MembraneEnergy(triangle_slabs(shell), shell, plane_moduli(moduli), rigidities, std::move(pattern)) {
   assert(moduli.size() == shell.triangles.size());
+  assert(rigidities.empty() || rigidities.size() == moduli.size());
 }
 
 }  // namespace muslin

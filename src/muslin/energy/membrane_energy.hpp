@@ -44,14 +44,14 @@ class MembraneEnergy : public Elements<TriangleStencil, MembraneLaw> {
   MembraneEnergy(const Shell& shell, const MembraneModuli& moduli,
                  std::shared_ptr<const SymmetricPattern> pattern = nullptr,
                  const BucklingRigidity& rigidity = {});
-  /// Gives each triangle its own moduli, #T.
+  /// Gives each triangle its own moduli, #T, and rigidity, #T or empty: elastic compression.
   MembraneEnergy(const Shell& shell, std::span<const MembraneModuli> moduli,
                  std::shared_ptr<const SymmetricPattern> pattern = nullptr,
-                 const BucklingRigidity& rigidity = {});
+                 std::span<const BucklingRigidity> rigidities = {});
 
  private:
   MembraneEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
-                 const std::vector<PlaneModuli>& moduli, const BucklingRigidity& rigidity,
+                 const std::vector<PlaneModuli>& moduli, std::span<const BucklingRigidity> rigidities,
                  std::shared_ptr<const SymmetricPattern> pattern);
 };
 

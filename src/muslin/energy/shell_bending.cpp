@@ -44,6 +44,11 @@ BendingModuli plate_of(const BendingCurves& c, double warp, double weft) {
 ShellBending::ShellBending(const Shell& shell, const BendingModuli& moduli,
                            std::shared_ptr<const SymmetricPattern> pattern,
                            std::span<const std::uint8_t> held)
+    : ShellBending(shell, std::span(&moduli, 1), std::move(pattern), held) {}
+
+ShellBending::ShellBending(const Shell& shell, std::span<const BendingModuli> moduli,
+                           std::shared_ptr<const SymmetricPattern> pattern,
+                           std::span<const std::uint8_t> held)
     : ElementEnergy(pattern),
       angles_(std::make_shared<const HingeAngles>(shell, std::move(pattern))),
       coupling_(couple_hinges(shell, moduli, held)) {

@@ -44,6 +44,9 @@ class ShellBending : public ElementEnergy {
   ShellBending(const Shell& shell, const BendingModuli& moduli,
                std::shared_ptr<const SymmetricPattern> pattern = nullptr,
                std::span<const std::uint8_t> held = {});
+  /// Gives each triangle its own moduli, #T, or one for all.
+  ShellBending(const Shell& shell, std::span<const BendingModuli> moduli,
+               std::shared_ptr<const SymmetricPattern> pattern, std::span<const std::uint8_t> held);
   ShellBending(const Shell& shell, const BendingCurves& curves,
                std::shared_ptr<const SymmetricPattern> pattern = nullptr,
                std::span<const std::uint8_t> held = {});

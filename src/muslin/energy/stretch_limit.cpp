@@ -32,21 +32,27 @@ double stretch_limit_stiffness(double membrane, double mass, double mean_edge, d
   return 2 * std::max(membrane, mass * gravity / (mean_edge * (limit - 1)));
 }
 
-StretchLimitEnergy::StretchLimitEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
-                                       const StretchBarrier& barrier, double stiffness,
+StretchLimitEnergy::StretchLimitEnergy(const Shell& shell, std::span<const double> limits,
+                                       std::span<const double> stiffnesses,
                                        std::shared_ptr<const SymmetricPattern> pattern)
-    : Elements(
-          slabs, TriangleStencil(*slabs, shell),
-          LawConstants<StretchLimitLaw>(
-              *slabs, [&](std::size_t) { return StretchLimitLaw::Constants{stiffness, barrier.numbers()}; }),
-          std::move(pattern)),
-      barrier_(barrier) {
-  require(stiffness >= 0, "the stiffness of a stretch limit is negative", "give 0 or more");
-}
+    : StretchLimitEnergy(triangle_slabs(shell), shell, limits, stiffnesses, std::move(pattern)) {}
 
 StretchLimitEnergy::StretchLimitEnergy(const Shell& shell, double limit, double stiffness,
                                        std::shared_ptr<const SymmetricPattern> pattern)
-    : StretchLimitEnergy(triangle_slabs(shell), shell, StretchBarrier(limit), stiffness, std::move(pattern)) {
-}
+    : StretchLimitEnergy(shell, std::vector<double>(shell.triangles.size(), limit),
+                         std::vector<double>(shell.triangles.size(), stiffness), std::move(pattern)) {}
+
+StretchLimitEnergy::StretchLimitEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
+                                       std::span<const double> limits, std::span<const double> stiffnesses,
+                                       std::shared_ptr<const SymmetricPattern> pattern)
+    : Elements(slabs, TriangleStencil(*slabs, shell),
+               LawConstants<StretchLimitLaw>(
+                   *slabs,
+                   [&](std::size_t t) {
+                     require(stiffnesses[t] >= 0, "the stiffness of a stretch limit is negative",
+                             "give 0 or more");
+                     return StretchLimitLaw::Constants{stiffnesses[t], StretchBarrier(limits[t]).numbers()};
+                   }),
+               std::move(pattern)) {}
 
 }  // namespace muslin

@@ -27,6 +27,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "muslin/energy/elements.hpp"
 #include "muslin/energy/stretch_limit_law.hpp"
@@ -49,13 +50,13 @@ class StretchLimitEnergy : public Elements<TriangleStencil, StretchLimitLaw> {
   StretchLimitEnergy(const Shell& shell, double limit, double stiffness,
                      std::shared_ptr<const SymmetricPattern> pattern = nullptr);
 
-  const StretchBarrier& barrier() const { return barrier_; }
+  /// Gives each triangle its own limit and stiffness, #T.
+  StretchLimitEnergy(const Shell& shell, std::span<const double> limits, std::span<const double> stiffnesses,
+                     std::shared_ptr<const SymmetricPattern> pattern);
 
  private:
-  StretchLimitEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell, const StretchBarrier& barrier,
-                     double stiffness, std::shared_ptr<const SymmetricPattern> pattern);
-
-  StretchBarrier barrier_;
+  StretchLimitEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell, std::span<const double> limits,
+                     std::span<const double> stiffnesses, std::shared_ptr<const SymmetricPattern> pattern);
 };
 
 }  // namespace muslin

@@ -4,11 +4,18 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "muslin/api.hpp"
 #include "muslin/geometry/mesh.hpp"
 
 namespace muslin {
+
+/// A number at every vertex, as painted in a modeller.
+struct VertexAttribute {
+  std::string name;
+  std::vector<double> values;  ///< #V, as in the file; may be NaN
+};
 
 /// Reads .obj, .ply, .stl, .gltf, .glb, .dae, .fbx; the content must match the suffix. Positions are in
 /// double; polygons, vertex order, texture seams and groups are as in the file. The mesh passes
@@ -17,7 +24,10 @@ namespace muslin {
 /// known.
 struct MeshFile {
   Mesh mesh;
-  std::string note;  ///< changes made by the reader, empty if none
+  std::string note = {};  ///< changes made by the reader, empty if none
+  /// Numbers at the vertices: further properties of a PLY file, of which one-byte ones are divided by 255,
+  /// and `red`, `green`, `blue` of an OBJ file with colours.
+  std::vector<VertexAttribute> attributes = {};
 };
 MUSLIN_API MeshFile read_mesh(const std::filesystem::path& path);
 

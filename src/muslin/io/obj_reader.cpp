@@ -36,6 +36,8 @@ class ObjReader {
     if (!has_uvs_) mesh_.corner_uvs.clear();
     if (mesh_.face_count() == 0) mesh_.face_offsets.clear();
     collect_groups();
+    if (colours_[0].values.size() == mesh_.positions.size() && !mesh_.positions.empty())
+      return {std::move(mesh_), note(), {colours_.begin(), colours_.end()}};
     return {std::move(mesh_), note()};
   }
 
@@ -57,6 +59,7 @@ class ObjReader {
     if (keyword == "v") {
       const double x = scanner_.coordinate(scanner_.word()), y = scanner_.coordinate(scanner_.word());
       mesh_.positions.push_back({x, y, scanner_.coordinate(scanner_.word())});
+      colour();
       check_count(mesh_.positions.size());
     } else if (keyword == "f" || keyword == "fo") {
       face();
@@ -92,6 +95,14 @@ class ObjReader {
     if (count > static_cast<std::size_t>(std::numeric_limits<int>::max() - 1))
       scanner_.fail({}, "the mesh is too large",
                     "split it into parts of less than two thousand million entries");
+  }
+
+  /// Red, green and blue behind a position; one number there is a weight, which has no use.
+  void colour() {
+    std::array<std::string_view, 3> words;
+    for (std::string_view& word : words) word = scanner_.word();
+    if (words[2].empty()) return;
+    for (std::size_t i = 0; i < 3; ++i) colours_[i].values.push_back(scanner_.number(words[i], "a colour"));
   }
 
   // A word "v", "v/t", "v//n" or "v/t/n"; the normal is only checked for being a number.
@@ -239,6 +250,7 @@ class ObjReader {
   std::vector<std::pair<int, int>> points_;  // group, vertex
   std::unordered_map<std::string, int> group_ids_, object_ids_;
   std::vector<std::string> group_names_, object_names_;
+  std::array<VertexAttribute, 3> colours_ = {{{"red", {}}, {"green", {}}, {"blue", {}}}};
   std::size_t left_out_ = 0, unknown_ = 0;
   int first_unknown_ = 0;
 };

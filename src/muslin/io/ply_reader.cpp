@@ -17,6 +17,7 @@ struct Property {
   std::optional<Scalar> count;  // of a list
   Scalar type{};
   Role role = Role::none;
+  int attribute = -1;  // of a vertex
 };
 
 struct Element {
@@ -93,7 +94,7 @@ class PlyReader {
       mesh_.uvs = std::move(vertex_uvs_);
       mesh_.corner_uvs = mesh_.face_vertices;
     }
-    return {std::move(mesh_), ""};
+    return {std::move(mesh_), "", std::move(attributes_)};
   }
 
  private:
@@ -163,7 +164,12 @@ class PlyReader {
       word = scanner_.word();
     }
     property.type = type(word);
-    property.role = role_of(element.name, scanner_.word(), property.count.has_value());
+    const std::string_view name = scanner_.word();
+    property.role = role_of(element.name, name, property.count.has_value());
+    if (property.role == Role::none && element.name == "vertex" && !property.count) {
+      property.attribute = static_cast<int>(attributes_.size());
+      attributes_.push_back({std::string(name), {}});
+    }
     if (property.role != Role::none && has_role(element, property.role)) property.role = Role::none;
     element.properties.push_back(property);
     if (element.properties.size() > 1024) scanner_.fail(word, "too many properties", "export the file again");
@@ -191,6 +197,9 @@ class PlyReader {
         continue;
       }
       const double value = number(property.type);
+      if (property.attribute >= 0)
+        attributes_[static_cast<std::size_t>(property.attribute)].values.push_back(
+            property.type == Scalar::uint8 ? value / 255 : value);
       switch (property.role) {
         case Role::x:
           position.x() = value;
@@ -302,6 +311,7 @@ class PlyReader {
   std::string_view word_;
   std::vector<double> corners_, corner_uvs_;
   std::vector<Vec2> vertex_uvs_;
+  std::vector<VertexAttribute> attributes_;
   int largest_ = -1;
   Mesh mesh_;
 };

@@ -1,6 +1,7 @@
 #include "muslin/material/keyed_material.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "muslin/material/varied_material.hpp"
 
@@ -13,22 +14,25 @@ bool changes(const schema::Variation& variation) {
 }
 
 template <class AnyMaterial>
-AnyMaterial numbers_at(const AnyMaterial& material, double time) {
-  std::vector<double> numbers;
-  schema::Variations maps;
-  for (const schema::Variation& variation : material.variations) {
-    numbers.push_back(variation.is_map() ? variation.nominal() : value_at(variation.keyframes, time));
-    if (variation.is_map()) maps.push_back(variation);
-  }
-  AnyMaterial result = with_numbers(material, numbers);
-  result.variations = std::move(maps);
+AnyMaterial at_time(const AnyMaterial& material, double time) {
+  AnyMaterial result = with_numbers(material, numbers_at(material.variations, time));
+  std::copy_if(material.variations.begin(), material.variations.end(), std::back_inserter(result.variations),
+               [](const schema::Variation& variation) { return variation.is_map(); });
   return result;
 }
 
 }  // namespace
 
-Material material_at(const Material& material, double time) { return numbers_at(material, time); }
-ShellMaterial material_at(const ShellMaterial& material, double time) { return numbers_at(material, time); }
+Material material_at(const Material& material, double time) { return at_time(material, time); }
+ShellMaterial material_at(const ShellMaterial& material, double time) { return at_time(material, time); }
+
+std::vector<double> numbers_at(const schema::Variations& variations, double time) {
+  std::vector<double> numbers;
+  numbers.reserve(variations.size());
+  for (const schema::Variation& variation : variations)
+    numbers.push_back(variation.is_map() ? variation.nominal() : value_at(variation.keyframes, time));
+  return numbers;
+}
 
 std::vector<double> keyframe_times(const schema::Variations& variations) {
   std::vector<double> times;

@@ -16,6 +16,8 @@ ShellMaterial material_at(const ShellMaterial& material, double time);
 std::vector<double> keyframe_times(const schema::Variations& variations);
 /// Returns these times and several between each two, for checks of rules that join numbers [s].
 std::vector<double> times_to_check(const schema::Variations& variations);
+/// Returns the numbers at a time, the nominal ones of those that vary by a map.
+std::vector<double> numbers_at(const schema::Variations& variations, double time);
 /// Returns the keyframed numbers at a time.
 std::vector<double> keyed_numbers(const schema::Variations& variations, double time);
 

@@ -17,8 +17,8 @@ using schema::Declaration;
 // Upper bounds far above any material: they keep products of the quantities finite.
 constexpr Range modulus{0, 1e15, false};
 constexpr Range damping{0, 1e6, false};
-constexpr schema::VaryingForms lattice_forms{.map = false, .keyframes = true};
-constexpr schema::VaryingForms unchanging_forms{.map = false, .keyframes = false};
+constexpr schema::VaryingForms lattice_forms{.map = true, .keyframes = true};
+constexpr schema::VaryingForms unchanging_forms{.map = true, .keyframes = false};
 
 /// A modulus of springs, in whose place a scene may give Young's modulus.
 Declaration spring_modulus(const char* name, double Material::* member, const char* meaning) {

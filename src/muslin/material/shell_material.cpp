@@ -19,8 +19,8 @@ namespace {
 
 constexpr Range sheet_modulus{0, 1e12, false};
 constexpr Range sheet_damping{0, 1e6, false};
-constexpr schema::VaryingForms shell_forms{.map = false, .keyframes = true};
-constexpr schema::VaryingForms unchanging_shell_forms{.map = false, .keyframes = false};
+constexpr schema::VaryingForms shell_forms{.map = true, .keyframes = true};
+constexpr schema::VaryingForms unchanging_shell_forms{.map = true, .keyframes = false};
 
 /// Returns the bias rigidity of an orthotropic plate whose twisting rigidity is the geometric mean of the two
 /// bending ones.

@@ -137,33 +137,77 @@ Image RunPictures::draw(int frame, const std::vector<Marker>& markers) {
   return p.tracer->render(view);
 }
 
-Image draw_start(const Model& model, const std::vector<Crossing>& crossings) {
-  constexpr std::size_t max_balls = 500;
+namespace {
+
+/// The components of a model at the start, and a camera that sees them.
+struct StartView {
+  explicit StartView(const Model& model)
+      : model(model), fit({}, static_cast<double>(render.width) / render.height) {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      const Component& body = model.bodies[b];
+      const Vec3 colour = colour_of(body, b);
+      Look look = body.is_collider() ? prop_look() : body.sheet ? fabric_look(colour) : solid_look(colour);
+      look.colour = colour;
+      scene.surfaces.push_back(make_surface(body.mesh, look));
+      view.surfaces.push_back({body.mesh.positions, {}});
+      if (body.appearance().unbounded) continue;
+      fit.add(body.mesh.positions);
+      bounds.extend(body.mesh.bounds());
+    }
+  }
+  Image draw() { return Raytracer(std::move(scene), fit.camera(), render).render(view); }
+
+  const Model& model;
   const RenderOptions render = PictureOptions().render;
   SceneView scene;
   FrameView view;
-  CameraFit fit({}, static_cast<double>(render.width) / render.height);
+  CameraFit fit;
   Box bounds;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Component& body = model.bodies[b];
-    const Vec3 colour = colour_of(body, b);
-    Look look = body.is_collider() ? prop_look() : body.sheet ? fabric_look(colour) : solid_look(colour);
-    look.colour = colour;
-    scene.surfaces.push_back(make_surface(body.mesh, look));
-    view.surfaces.push_back({body.mesh.positions, {}});
-    if (body.appearance().unbounded) continue;
-    fit.add(body.mesh.positions);
-    bounds.extend(body.mesh.bounds());
-  }
+};
+
+/// Draws the numbers that a map gives to the body with this index.
+Image draw_map(const Model& model, std::size_t body, const MappedNumber& map) {
+  std::vector<double> numbers;
+  numbers.reserve(map.weights.size());
+  for (std::size_t v = 0; v < map.weights.size(); ++v) numbers.push_back(map.at(v));
+  StartView start(model);
+  ColourScale scale;
+  scale.low = *std::min_element(numbers.begin(), numbers.end());
+  scale.high = *std::max_element(numbers.begin(), numbers.end());
+  scale.label = map.unit.empty() ? map.variation.key : fmt::format("{} [{}]", map.variation.key, map.unit);
+  start.scene.colour_scale = scale;
+  start.view.surfaces[body].values = numbers;
+  start.view.label = fmt::format("{}   by {}", model.bodies[body].name, map.variation.map);
+  return start.draw();
+}
+
+/// Puts pictures of one width below each other.
+Image stacked(const std::vector<Image>& images) {
+  Image all(images.front().width, images.front().height * static_cast<int>(images.size()));
+  all.pixels.clear();
+  for (const Image& image : images)
+    all.pixels.insert(all.pixels.end(), image.pixels.begin(), image.pixels.end());
+  return all;
+}
+
+}  // namespace
+
+Image draw_start(const Model& model, const std::vector<Crossing>& crossings) {
+  constexpr std::size_t max_balls = 500, max_panels = 16;
+  StartView start(model);
   Marker ball;
-  ball.radius = 0.012 * bounds.diagonal().norm();
+  ball.radius = 0.012 * start.bounds.diagonal().norm();
   ball.colour = Vec3(0.95, 0.1, 0.1);
   for (std::size_t i = 0; i < std::min(crossings.size(), max_balls); ++i) {
     ball.position = crossings[i].at;
-    view.markers.push_back(ball);
+    start.view.markers.push_back(ball);
   }
-  view.label = fmt::format("{}   {} crossings", model.scene.title, crossings.size());
-  return Raytracer(std::move(scene), fit.camera(), render).render(view);
+  start.view.label = fmt::format("{}   {} crossings", model.scene.title, crossings.size());
+  std::vector<Image> panels = {start.draw()};
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MappedNumber& map : model.bodies[b].maps)
+      if (panels.size() < max_panels) panels.push_back(draw_map(model, b, map));
+  return stacked(panels);
 }
 
 void write_run_plots(const RunReader& run) {

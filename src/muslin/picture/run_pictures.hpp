@@ -43,7 +43,8 @@ class RunPictures {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Draws the start of a scene, with a red ball wherever surfaces cross.
+/// Draws the start of a scene, with a red ball wherever surfaces cross, and below it a panel for each of the
+/// first 15 maps, coloured by the number.
 Image draw_start(const Model& model, const std::vector<Crossing>& crossings);
 
 /// Writes energy.svg, energy.png, stretch.svg, stretch.png to the run directory.

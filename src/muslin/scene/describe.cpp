@@ -29,11 +29,52 @@ double stable_step(const Model& model) {
   return step;
 }
 
+struct MapRange {
+  double least = std::numeric_limits<double>::infinity(), most = -least, mean = 0;
+};
+MapRange range_of(const MappedNumber& map) {
+  MapRange range;
+  for (std::size_t v = 0; v < map.weights.size(); ++v) {
+    const double number = map.at(v);
+    range.least = std::min(range.least, number);
+    range.most = std::max(range.most, number);
+    range.mean += number / static_cast<double>(map.weights.size());
+  }
+  return range;
+}
+
+Json maps_json(const Component& body) {
+  Json list = Json::array();
+  for (const MappedNumber& map : body.maps) {
+    const auto [least, most, mean] = range_of(map);
+    list.push_back({{"key", map.variation.key},
+                    {"map", map.variation.map},
+                    {"unit", map.unit},
+                    {"min", least},
+                    {"max", most},
+                    {"mean", mean}});
+  }
+  return list;
+}
+
+std::string maps_text(const Component& body) {
+  std::string text;
+  for (const MappedNumber& map : body.maps) {
+    const auto [least, most, mean] = range_of(map);
+    text += fmt::format("  map         {} {:.4g} to {:.4g}{}{}, mean {:.4g}, by `{}`\n", map.variation.key,
+                        least, most, map.unit.empty() ? "" : " ", map.unit, mean, map.variation.map);
+  }
+  return text;
+}
+
 /// Returns the descriptions of all components that are colliders, or of all others.
 Json list_of(const Model& model, bool colliders) {
   Json list = Json::array();
-  for (const Component& body : model.bodies)
-    if (body.is_collider() == colliders) list.push_back(Json::parse(body.description_json()));
+  for (const Component& body : model.bodies) {
+    if (body.is_collider() != colliders) continue;
+    list.push_back(Json::parse(body.description_json()));
+    if (!body.maps.empty()) list.back()["maps"] = maps_json(body);
+  }
   return list;
 }
 
@@ -132,7 +173,7 @@ std::string statistics_json(const Model& model) {
 std::string describe_text(const Model& model, std::span<const Crossing> crossings) {
   const Scene& scene = model.scene;
   std::string text = scene.title + "\n";
-  for (const Component& body : model.bodies) text += body.description();
+  for (const Component& body : model.bodies) text += body.description() + maps_text(body);
   if (model.contact) {
     text += fmt::format("contact: within {:.3g} m, friction {:.3g}\n", model.contact->distance,
                         model.contact->friction);

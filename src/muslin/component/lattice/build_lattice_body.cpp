@@ -1,8 +1,12 @@
 #include <array>
 #include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "muslin/component/body_maps.hpp"
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/changing_terms.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
@@ -16,6 +20,7 @@
 #include "muslin/field/signed_distance.hpp"
 #include "muslin/geometry/thicken.hpp"
 #include "muslin/material/keyed_material.hpp"
+#include "muslin/material/material_table.hpp"
 #include "muslin/potential/mass_damping.hpp"
 
 namespace muslin {
@@ -34,10 +39,11 @@ class LatticeBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    read_body_mesh(settings_, inputs_, body_);
+    const std::vector<VertexAttribute> attributes = read_body_mesh(settings_, inputs_, body_);
     make_solid();
     at_place(settings_.place, inputs_.files.resolve(settings_.mesh).string(),
              [&] { fill(inputs_.progress); });
+    vary_material(attributes);
     weigh(body_);
     add_lattice_terms(body_);
     return built_;
@@ -124,6 +130,17 @@ class LatticeBuilder {
     }
   }
 
+  void vary_material(const std::vector<VertexAttribute>& attributes) {
+    body_.maps =
+        read_maps(settings_.material.variations, lattice_material_table(), attributes, inputs_, body_);
+    const MappedNumber* damping = find_map(body_.maps, "stiffness_damping");
+    if (damping != nullptr && settings_.material.has_springs())
+      throw Error(ErrorKind::input, damping->variation.place,
+                  "`stiffness_damping` of springs cannot vary by a map",
+                  "give a number, which damps in proportion to the moduli, or a solid by `law`");
+    body_.vertex_maps = over_lattice(body_.maps, body_.mesh, body_.lattice);
+  }
+
   const BodySettings& settings_;
   const LatticeBodySettings& own_;
   const ComponentInputs& inputs_;
@@ -143,20 +160,28 @@ class LatticeTerms {
     lattice.fill = body_.voxel_shares();
     std::shared_ptr<const Load> damping;
     if (const SolidLaw* law = find_solid_law(material.law)) {
-      const auto solid = law->make(lattice, SolidModuli{*material.youngs_modulus, material.poisson},
-                                   tetrahedron_pattern(body_.lattice));
+      const auto pattern = tetrahedron_pattern(body_.lattice);
+      const auto made = [&](const Lattice& weighted) {
+        return law->make(weighted, SolidModuli{*material.youngs_modulus, material.poisson}, pattern);
+      };
+      const Lattice stiff = filled(lattice, "youngs_modulus");
+      const auto solid = made(stiff);
       body_.potentials.push_back({"solid", EnergyRole::elastic, solid});
       add_blocks(*solid, 4);
-      damping = std::make_shared<ElementDamping>(solid, material.stiffness_damping);
+      const MappedNumber* damped = find_map(body_.maps, "stiffness_damping");
+      const bool even = damped == nullptr || damped->variation.from == damped->variation.to;
+      damping = std::make_shared<ElementDamping>(even ? solid : made(filled(stiff, "stiffness_damping")),
+                                                 material.stiffness_damping);
     } else {
       const auto springs = std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli,
-                                                          spring_weights(), body_.network);
+                                                          varied(spring_weights()), body_.network);
       body_.potentials.push_back({"springs", EnergyRole::elastic, springs});
       add_blocks(*springs, 2);
       damping = std::make_shared<SpringDamping>(springs, material.stiffness_damping);
     }
     if (material.volume_modulus > 0) {
-      const auto volume = std::make_shared<VolumeEnergy>(lattice, material.volume_modulus);
+      const auto volume =
+          std::make_shared<VolumeEnergy>(filled(lattice, "volume_modulus"), material.volume_modulus);
       body_.potentials.push_back({"volume", EnergyRole::elastic, volume});
       add_blocks(*volume, 4);
     }
@@ -164,8 +189,11 @@ class LatticeTerms {
     if (material.stiffness_damping > 0)
       body_.loads.push_back({"stiffness damping", EnergyRole::dissipation, damping});
     if (material.mass_damping != 0) {
+      std::vector<double> damped = masses;
+      if (const MappedNumber* map = find_map(body_.vertex_maps, "mass_damping"))
+        for (std::size_t v = 0; v < damped.size(); ++v) damped[v] *= map->at(v) / material.mass_damping;
       body_.loads.push_back({"mass damping", EnergyRole::dissipation,
-                             std::make_shared<MassDamping>(material.mass_damping, masses)});
+                             std::make_shared<MassDamping>(material.mass_damping, std::move(damped))});
     }
     body_.statistics.stable_step = stable_step(blocks_, masses);
   }
@@ -178,6 +206,30 @@ class LatticeTerms {
   }
 
  private:
+  /// `weights` of springs times the mean of their mapped modulus at both ends, over the nominal one.
+  std::vector<float> varied(std::vector<float> weights) const {
+    constexpr std::array keys = {"edge_modulus", "face_diagonal_modulus", "body_diagonal_modulus"};
+    if (body_.vertex_maps.empty()) return weights;
+    if (weights.empty()) weights.assign(static_cast<std::size_t>(body_.springs.count), 1.0F);
+    for (const SpringRun& run : body_.springs.runs) {
+      const SpringKind kind = body_.springs.directions[static_cast<std::size_t>(run.direction)].kind;
+      const MappedNumber* map = find_map(body_.vertex_maps, keys[static_cast<std::size_t>(kind)]);
+      if (map == nullptr || map->variation.nominal() == 0) continue;
+      for (int i = 0; i < run.length; ++i) {
+        const double number = map->mean(std::array{run.a + i, run.b + i});
+        weights[static_cast<std::size_t>(run.first + i)] *=
+            static_cast<float>(number / map->variation.nominal());
+      }
+    }
+    return weights;
+  }
+  /// `lattice` with its fill times the mapped number over the nominal one.
+  Lattice filled(Lattice lattice, std::string_view key) const {
+    const std::vector<double> factors = body_.voxel_factors(key);
+    for (std::size_t c = 0; c < factors.size(); ++c) lattice.fill[c] *= factors[c];
+    return lattice;
+  }
+
   void add_blocks(const Potential& potential, double vertices_of_element) {
     std::vector<Mat3> blocks(body_.lattice.vertex_count(), Mat3::Zero());
     std::vector<Vec3> rest(blocks.size());
@@ -210,6 +262,8 @@ void add_lattice_terms(LatticeBody& body) {
                               at_time->lattice = body.lattice;
                               at_time->springs = body.springs;
                               at_time->network = body.network;
+                              at_time->maps = body.maps;
+                              at_time->vertex_maps = body.vertex_maps;
                               LatticeTerms(*at_time).add_terms();
                               return at_time;
                             }});

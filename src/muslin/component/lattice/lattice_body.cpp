@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/component/body_maps.hpp"
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/parallel.hpp"
@@ -45,9 +46,20 @@ std::vector<double> LatticeBody::voxel_shares() const {
   return std::vector<double>(lattice.voxel_count(), 1.0);
 }
 
+std::vector<double> LatticeBody::voxel_factors(std::string_view key) const {
+  std::vector<double> factors(lattice.voxel_count(), 1.0);
+  const MappedNumber* map = find_map(vertex_maps, key);
+  if (map == nullptr || map->variation.nominal() == 0) return factors;
+  for (std::size_t c = 0; c < factors.size(); ++c)
+    factors[c] = map->mean(lattice.voxel_vertices[c]) / map->variation.nominal();
+  return factors;
+}
+
 /// Each voxel gives an eighth of density·share·width³ to each of its corners.
 std::vector<double> LatticeBody::masses() const {
-  const std::vector<double> shares = voxel_shares();
+  std::vector<double> shares = voxel_shares();
+  const std::vector<double> factors = voxel_factors("density");
+  for (std::size_t c = 0; c < shares.size(); ++c) shares[c] *= factors[c];
   const double corner = settings.material.density * lattice.width * lattice.width * lattice.width / 8;
   std::vector<double> masses(lattice.vertex_count(), 0.0);
   for (std::size_t c = 0; c < lattice.voxel_count(); ++c) {
@@ -145,7 +157,8 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
 std::uint64_t LatticeBody::shape_hash(std::uint64_t seed) const { return range_hash(seed, springs.count); }
 
 std::uint64_t LatticeBody::material_hash(std::uint64_t seed) const {
-  return muslin::material_hash(settings.material, static_cast<double>(own().boundary_springs), seed);
+  return maps_hash(
+      maps, muslin::material_hash(settings.material, static_cast<double>(own().boundary_springs), seed));
 }
 
 const LatticeBody* as_lattice(const Component& component) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "muslin/component/body_settings.hpp"
@@ -30,6 +31,7 @@ class LatticeBody final : public Component {
   Springs springs;
   Contour contour;
   std::shared_ptr<const SpringNetwork> network;  ///< of springs whose stiffness changes; null: none
+  std::vector<MappedNumber> vertex_maps;  ///< `maps` over the vertices of the lattice, by the nearest surface
 
   std::string kind() const override { return "lattice"; }
   Vec3 rest_position(std::size_t v) const override { return lattice.rest_position(v); }
@@ -58,6 +60,9 @@ class LatticeBody final : public Component {
   const LatticeBodySettings& own() const { return settings.own.as<LatticeBodySettings>(); }
   /// Returns the share by which each voxel counts: its fill, or 1 with Mass::cells.
   std::vector<double> voxel_shares() const;
+  /// Returns #voxels: the mean of a mapped number over a voxel's corners, over the nominal one; 1 without a
+  /// map.
+  std::vector<double> voxel_factors(std::string_view key) const;
 };
 
 /// Builds a lattice. Errors: input and file, with the place in the scene and the mesh file.

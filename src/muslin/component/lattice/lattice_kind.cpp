@@ -41,6 +41,24 @@ const schema::Table& input_table() {
   return table;
 }
 
+/// Lets the three moduli vary as Young's modulus does, to which they are proportional.
+void vary_moduli(const schema::Variation& youngs, Bracing bracing, Material& material) {
+  const SpringModuli from = springs_for(youngs.from, std::nullopt, bracing);
+  const SpringModuli to = springs_for(youngs.to, std::nullopt, bracing);
+  const auto varied = [&](const char* key, double first, double last) {
+    schema::Variation modulus = youngs;
+    modulus.key = key;
+    modulus.from = first;
+    modulus.to = last;
+    return modulus;
+  };
+  const schema::Variations moduli = {varied("edge_modulus", from.edge, to.edge),
+                                     varied("face_diagonal_modulus", from.face_diagonal, to.face_diagonal),
+                                     varied("body_diagonal_modulus", from.body_diagonal, to.body_diagonal)};
+  schema::forget_variation(material.variations, "youngs_modulus");
+  material.variations.insert(material.variations.end(), moduli.begin(), moduli.end());
+}
+
 /// Sets the three moduli by Young's modulus and an optional shear modulus.
 void set_moduli(const TomlTable& table, std::optional<double> shear_modulus, Bracing bracing,
                 Material& material) {
@@ -58,6 +76,12 @@ void set_moduli(const TomlTable& table, std::optional<double> shear_modulus, Bra
   material.face_diagonal_modulus = moduli.face_diagonal;
   material.body_diagonal_modulus = moduli.body_diagonal;
   material.youngs_modulus.reset();
+  const schema::Variation* map = schema::find_variation(material.variations, "youngs_modulus");
+  if (map == nullptr) return;
+  if (shear_modulus)
+    throw table.error("shear_modulus", "`shear_modulus` stands beside a `youngs_modulus` that varies",
+                      "leave it out");
+  vary_moduli(*map, bracing, material);
 }
 
 /// A solid takes the place of the springs of `base`.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/component/body_maps.hpp"
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/placement.hpp"
 #include "muslin/component/shell/shell_body.hpp"
@@ -30,9 +31,10 @@ class ShellBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    read_body_mesh(settings_, inputs_, body_);
+    const std::vector<VertexAttribute> attributes = read_body_mesh(settings_, inputs_, body_);
     const Mesh rest = rest_mesh();
     at_place(settings_.mesh_place, file_, [&] { make_shell(rest); });
+    vary_material(attributes);
     weigh(body_);
     return built_;
   }
@@ -101,6 +103,28 @@ class ShellBuilder {
     s.vertices = body_.vertex_count;
     s.triangles = static_cast<std::int64_t>(body_.shell.triangles.size());
     s.hinges = static_cast<std::int64_t>(body_.shell.hinges.size());
+  }
+
+  void vary_material(const std::vector<VertexAttribute>& attributes) {
+    const ShellMaterial& material = body_.material();
+    body_.maps = read_maps(material.variations, shell_material_table(), attributes, inputs_, body_);
+    if (body_.maps.empty()) return;
+    const Place& place = body_.maps.front().variation.place;
+    if (has_curves(material) || has_bending_curves(material))
+      throw Error(ErrorKind::input, place, "maps and measured curves are in one material",
+                  "give moduli in place of the curves");
+    for (const MappedNumber& map : body_.maps)
+      if (material.yield_curvature && (map.variation.key.starts_with("bending_") || map.variation.key == "poisson"))
+        throw Error(ErrorKind::input, map.variation.place,
+                    fmt::format("`{}` varies by a map in a material with `yield_curvature`", map.variation.key),
+                    "give a sheet that creases one number for its bending");
+    body_.triangle_materials = body_.materials_of_triangles(0);
+    for (std::size_t t = 0; t < body_.triangle_materials.size(); ++t) {
+      shell_material_table().check(body_.triangle_materials[t],
+                                   schema::Subject(fmt::format("the material of body `{}` at polygon {}",
+                                                               settings_.name, body_.shell.faces[t] + 1),
+                                                   place));
+    }
   }
 
   void warn_of_inverted_triangles(const Mesh& rest) {

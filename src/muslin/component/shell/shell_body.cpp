@@ -8,9 +8,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "muslin/component/body_maps.hpp"
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/description.hpp"
 #include "muslin/component/shell/trusted_edge.hpp"
+#include "muslin/material/keyed_material.hpp"
+#include "muslin/material/varied_material.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/error.hpp"
@@ -52,11 +55,24 @@ const ShellMaterial& ShellBody::material() const {
   return *settings.material.shell;
 }
 
+std::vector<ShellMaterial> ShellBody::materials_of_triangles(double time) const {
+  std::vector<double> numbers = numbers_at(material().variations, time);
+  std::vector<ShellMaterial> materials;
+  materials.reserve(shell.triangles.size());
+  for (const Vec3i& triangle : shell.triangles) {
+    for (const MappedNumber& map : maps) numbers[map.index] = map.mean(triangle);
+    materials.push_back(with_numbers(material(), numbers));
+  }
+  return materials;
+}
+
 std::vector<double> ShellBody::masses() const {
   // Cloth that shrinks keeps its mass.
-  const double density = material().areal_density / own().rest_scale().prod();
+  const double scale = own().rest_scale().prod(), density = material().areal_density / scale;
   std::vector<double> masses = shell.vertex_areas;
-  for (double& m : masses) m *= density;
+  const MappedNumber* mapped = find_map(maps, "areal_density");
+  for (std::size_t v = 0; v < masses.size(); ++v)
+    masses[v] *= mapped != nullptr ? mapped->at(v) / scale : density;
   return masses;
 }
 
@@ -111,7 +127,7 @@ std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
     const std::array yield = {*m.yield_curvature, m.yield_hardening, m.yield_recovery.value_or(0)};
     hash = hash_bytes(yield.data(), sizeof yield, hash);
   }
-  return hash;
+  return maps_hash(maps, hash);
 }
 
 void ShellBody::write_stages(const std::filesystem::path& folder, const Progress& /*progress*/) const {

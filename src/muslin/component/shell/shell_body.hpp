@@ -25,6 +25,7 @@ class ShellBody final : public Component {
   BodySettings settings;  ///< with numbers of a shell in `material`
   Shell shell;
   std::shared_ptr<const SymmetricPattern> pattern;  ///< of the pairs of vertices that terms couple
+  std::vector<ShellMaterial> triangle_materials;  ///< #T where maps vary the material; empty: one for all
 
   std::string kind() const override { return "shell"; }
   void add_terms(std::span<const std::uint8_t> held) override;
@@ -47,6 +48,12 @@ class ShellBody final : public Component {
 
   /// The numbers of its material. Errors: usage, if the material has none of shells.
   const ShellMaterial& material() const;
+  /// Returns the numbers at each triangle at a time [s], for a material that varies by maps.
+  std::vector<ShellMaterial> materials_of_triangles(double time) const;
+  /// The numbers at a triangle.
+  const ShellMaterial& material_at(std::size_t t) const {
+    return triangle_materials.empty() ? material() : triangle_materials[t];
+  }
   const ShellBodySettings& own() const { return settings.own.as<ShellBodySettings>(); }
 };
 

@@ -102,12 +102,21 @@ const schema::Table& keys() {
   return table;
 }
 
+/// The largest of a limit that varies.
+std::optional<double> largest_limit(const ShellMaterial& material) {
+  const schema::Variation* variation = schema::find_variation(material.variations, "stretch_limit");
+  if (variation == nullptr || !variation->is_map()) return material.stretch_limit;
+  return std::max(variation->from, variation->to);
+}
+
 void finish(const TomlTable& table, const std::filesystem::path& folder, BodySettings& body,
             std::vector<std::string>& warnings) {
   read_body_material(material_use, table, folder, body);
   std::optional<double>& limit = body.own.as<Own>().stretch_limit;
+  if (limit && body.material.shell)
+    schema::forget_variation(body.material.shell->variations, "stretch_limit");
   const ShellMaterial numbers = body.material.shell.value_or(ShellMaterial());
-  if (!limit) limit = numbers.stretch_limit;
+  if (!limit) limit = largest_limit(numbers);
   if (limit && *limit < low_stretch_limit) {
     warnings.push_back(fmt::format(
         "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",

@@ -30,52 +30,83 @@ class ShellTerms {
     const ShellMaterial& m = material_;
     if (!body_.pattern) body_.pattern = block_pattern(body_.shell);
     const auto pattern = body_.pattern;
-    const auto membrane = membrane_on(pattern);
+    const auto membrane = membrane_on(pattern, even);
     add("membrane", membrane);
     // The stable step is that of the stiffest state.
-    add_blocks(MembraneEnergy(body_.shell, {stress_.warp.greatest_slope(), stress_.weft.greatest_slope(),
-                                            stress_.shear.greatest_slope(), m.poisson}),
-               3);
-    // The limit has no stiffness at rest, so that the stable step does not know it.
-    if (body_.own().stretch_limit) {
-      const double limit = *body_.own().stretch_limit;
-      const double strain = 0.5 * (limit * limit - 1);
-      const double stiffness =
-          stretch_limit_stiffness(std::max(stress_.warp.slope(strain), stress_.weft.slope(strain)),
-                                  body_.statistics.mass, body_.shell.mean_edge, limit);
-      add("stretch limit", std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness, pattern));
+    if (body_.triangle_materials.empty()) {
+      add_blocks(MembraneEnergy(body_.shell, {stress_.warp.greatest_slope(), stress_.weft.greatest_slope(),
+                                              stress_.shear.greatest_slope(), m.poisson}),
+                 3);
+    } else {
+      add_blocks(*membrane_on(nullptr, even), 3);
     }
-    const auto bending = bending_on(pattern, held);
+    // The limit has no stiffness at rest, so that the stable step does not know it.
+    if (body_.own().stretch_limit) add("stretch limit", limit_on(pattern));
+    const auto bending = bending_on(pattern, held, even);
     add_bending(bending, held);
     add_blocks(*bending, 2 * 4);  // blocks of half the stiffness that bounds it
     if (has_bending_friction(m)) add_bending_friction(*bending, held);
-    if (m.stiffness_damping > 0)
-      add_damping("stiffness damping", std::make_shared<ElementDamping>(membrane, m.stiffness_damping));
-    if (m.bending_damping > 0)
-      add_damping("bending damping", std::make_shared<ElementDamping>(bending, m.bending_damping));
+    add_dampings(pattern, held, membrane, bending);
     const std::vector<double> masses = body_.masses();
-    if (m.mass_damping != 0)
-      add_damping("mass damping", std::make_shared<MassDamping>(m.mass_damping, masses));
     body_.statistics.stable_step = stable_step(blocks_, masses);
   }
 
  private:
-  std::shared_ptr<const ElementEnergy> membrane_on(std::shared_ptr<const SymmetricPattern> pattern) const {
+  using Pattern = std::shared_ptr<const SymmetricPattern>;
+  static constexpr auto even = [](const ShellMaterial&) { return 1.0; };
+
+  /// The numbers of all triangles, or one for all.
+  std::span<const ShellMaterial> materials() const {
+    if (body_.triangle_materials.empty()) return {&material_, 1};
+    return body_.triangle_materials;
+  }
+
+  /// The membrane, each triangle's stiffness times factor(material).
+  template <class Factor>
+  std::shared_ptr<const ElementEnergy> membrane_on(Pattern pattern, const Factor& factor) const {
     const ShellMaterial& m = material_;
     if (has_curves(m))
       return std::make_shared<MeasuredMembrane>(body_.shell, stress_, m.poisson, std::move(pattern),
                                                 rigidity());
-    return std::make_shared<MembraneEnergy>(
-        body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson},
-        std::move(pattern), rigidity());
+    if (body_.triangle_materials.empty())
+      return std::make_shared<MembraneEnergy>(
+          body_.shell, MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson},
+          std::move(pattern), rigidity());
+    std::vector<MembraneModuli> moduli;
+    std::vector<BucklingRigidity> rigidities;
+    const bool buckles = body_.own().compression == Compression::buckling;
+    for (const ShellMaterial& at : materials()) {
+      const double f = factor(at);
+      moduli.push_back({f * at.membrane_warp, f * at.membrane_weft, f * at.membrane_shear, at.poisson});
+      if (buckles) rigidities.push_back({f * at.bending_warp, f * at.bending_weft});
+    }
+    return std::make_shared<MembraneEnergy>(body_.shell, moduli, std::move(pattern), rigidities);
+  }
+  std::shared_ptr<const Potential> limit_on(Pattern pattern) const {
+    const double limit = *body_.own().stretch_limit, strain = 0.5 * (limit * limit - 1);
+    double stiffest = std::max(stress_.warp.slope(strain), stress_.weft.slope(strain));
+    for (const ShellMaterial& at : body_.triangle_materials)
+      stiffest = std::max({stiffest, at.membrane_warp, at.membrane_weft});
+    const auto stiffness = [&](double at) {
+      return stretch_limit_stiffness(stiffest, body_.statistics.mass, body_.shell.mean_edge, at);
+    };
+    if (find_map(body_.maps, "stretch_limit") == nullptr)
+      return std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness(limit), std::move(pattern));
+    std::vector<double> limits, stiffnesses;
+    for (const ShellMaterial& at : materials()) {
+      limits.push_back(*at.stretch_limit);
+      stiffnesses.push_back(stiffness(*at.stretch_limit));
+    }
+    return std::make_shared<StretchLimitEnergy>(body_.shell, limits, stiffnesses, std::move(pattern));
   }
   BucklingRigidity rigidity() const {
     if (body_.own().compression == Compression::elastic) return {};
     const SheetMoments moments = moments_of(material_);
     return {moments.warp.slope(0), moments.weft.slope(0)};
   }
-  std::shared_ptr<const ShellBending> bending_on(std::shared_ptr<const SymmetricPattern> pattern,
-                                                 std::span<const std::uint8_t> held) const {
+  template <class Factor>
+  std::shared_ptr<const ShellBending> bending_on(Pattern pattern, std::span<const std::uint8_t> held,
+                                                 const Factor& factor) const {
     const ShellMaterial& m = material_;
     if (has_bending_curves(m)) {
       const SheetMoments moments = moments_of(m);
@@ -83,7 +114,12 @@ class ShellTerms {
           body_.shell, BendingCurves{moments.warp, moments.weft, m.bending_bias, m.poisson},
           std::move(pattern), held);
     }
-    return std::make_shared<ShellBending>(body_.shell, plate(), std::move(pattern), held);
+    std::vector<BendingModuli> moduli;
+    for (const ShellMaterial& at : materials()) {
+      const double f = factor(at);
+      moduli.push_back({f * at.bending_warp, f * at.bending_weft, f * at.bending_bias, at.poisson});
+    }
+    return std::make_shared<ShellBending>(body_.shell, moduli, std::move(pattern), held);
   }
   BendingModuli plate() const {
     const ShellMaterial& m = material_;
@@ -97,6 +133,30 @@ class ShellTerms {
     body_.loads.push_back(
         {"bending", EnergyRole::elastic,
          std::make_shared<PlasticBending>(body_.name, body_.shell, plate(), yield, elastic, held)});
+  }
+  /// Where a damping varies, its elements are those of the energy with a stiffness that varies as it does.
+  void add_dampings(const Pattern& pattern, std::span<const std::uint8_t> held,
+                    std::shared_ptr<const ElementEnergy> membrane,
+                    std::shared_ptr<const ElementEnergy> bending) {
+    const ShellMaterial& m = material_;
+    const auto varies = [&](const char* key) { return find_map(body_.maps, key) != nullptr; };
+    if (m.stiffness_damping > 0) {
+      if (varies("stiffness_damping"))
+        membrane = membrane_on(
+            pattern, [&](const ShellMaterial& at) { return at.stiffness_damping / m.stiffness_damping; });
+      add_damping("stiffness damping", std::make_shared<ElementDamping>(membrane, m.stiffness_damping));
+    }
+    if (m.bending_damping > 0) {
+      if (!body_.maps.empty())
+        bending = bending_on(pattern, held,
+                             [&](const ShellMaterial& at) { return at.bending_damping / m.bending_damping; });
+      add_damping("bending damping", std::make_shared<ElementDamping>(bending, m.bending_damping));
+    }
+    if (m.mass_damping == 0) return;
+    std::vector<double> masses = body_.masses();
+    if (const MappedNumber* map = find_map(body_.maps, "mass_damping"))
+      for (std::size_t v = 0; v < masses.size(); ++v) masses[v] *= map->at(v) / m.mass_damping;
+    add_damping("mass damping", std::make_shared<MassDamping>(m.mass_damping, std::move(masses)));
   }
   void add_bending_friction(const ShellBending& bending, std::span<const std::uint8_t> held) {
     const ShellMaterial& m = material_;
@@ -145,8 +205,10 @@ void ShellBody::add_terms(std::span<const std::uint8_t> held) {
                         at_time->vertex_count = vertex_count;
                         at_time->statistics = statistics;
                         at_time->settings = settings;
-                        at_time->settings.material.shell = material_at(material(), time);
+                        at_time->settings.material.shell = muslin::material_at(material(), time);
                         at_time->shell = shell;
+                        at_time->maps = maps;
+                        if (!maps.empty()) at_time->triangle_materials = materials_of_triangles(time);
                         at_time->pattern = pattern;
                         ShellTerms(*at_time).add(always_held);
                         return at_time;

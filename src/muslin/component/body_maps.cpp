@@ -1,0 +1,136 @@
+#include "muslin/component/body_maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "muslin/core/hash.hpp"
+#include "muslin/core/nearest_name.hpp"
+#include "muslin/core/parallel.hpp"
+#include "muslin/geometry/closest_point.hpp"
+#include "muslin/io/number_file.hpp"
+
+namespace muslin {
+namespace {
+
+class MapReader {
+ public:
+  MapReader(const schema::Variation& variation, const std::vector<VertexAttribute>& attributes,
+            const ComponentInputs& inputs, const Component& component)
+      : variation_(variation), attributes_(attributes), inputs_(inputs), component_(component) {}
+
+  std::vector<double> weights() const {
+    std::vector<double> weights = values();
+    const std::size_t count = component_.mesh.vertex_count();
+    if (weights.size() != count)
+      refuse(fmt::format("has {} numbers, but the mesh of body `{}` has {} vertices", weights.size(),
+                         component_.name, count),
+             "give one for each vertex, in the order of the mesh");
+    const auto [lowest, highest] = std::pair(variation_.lowest, variation_.highest);
+    for (std::size_t v = 0; v < count; ++v) {
+      double& weight = weights[v];
+      if (!(weight >= lowest && weight <= highest))
+        refuse(fmt::format("is {} at vertex {}, counted from 0, which is not between {} and {}", weight, v,
+                           lowest, highest),
+               "set `lowest` and `highest` of the map to the range of its values");
+      weight = (weight - lowest) / (highest - lowest);
+    }
+    return weights;
+  }
+
+ private:
+  std::vector<double> values() const {
+    if (is_number_file(variation_.map)) return from_file();
+    for (const VertexAttribute& attribute : attributes_)
+      if (attribute.name == variation_.map) return attribute.values;
+    for (const MeshGroup& group : component_.mesh.groups)
+      if (group.name == variation_.map) return from_group(group);
+    std::vector<std::string> names;
+    for (const VertexAttribute& attribute : attributes_) names.push_back(attribute.name);
+    for (const MeshGroup& group : component_.mesh.groups) names.push_back(group.name);
+    refuse(fmt::format("is no attribute or group of the mesh of body `{}`", component_.name),
+           names.empty() ? "the mesh has none; name a .csv or .npy file with a number for each vertex"
+                         : name_advice(variation_.map, names));
+  }
+
+  std::vector<double> from_file() const {
+    try {
+      return read_numbers(inputs_.files.resolve(variation_.map));
+    } catch (const Error& error) {
+      const Place& place = error.place();
+      const std::string line = place.line > 0 ? fmt::format(" line {}:", place.line) : "";
+      throw Error(error.kind(), variation_.place,
+                  fmt::format("the map `{}`:{} {}", variation_.map, line, error.problem()), error.remedy());
+    }
+  }
+
+  std::vector<double> from_group(const MeshGroup& group) const {
+    std::vector<double> weights(component_.mesh.vertex_count(), variation_.lowest);
+    for (const int v : group.vertices) weights[static_cast<std::size_t>(v)] = variation_.highest;
+    return weights;
+  }
+
+  [[noreturn]] void refuse(const std::string& problem, std::string remedy) const {
+    throw Error(ErrorKind::input, variation_.place,
+                fmt::format("the map `{}` of `{}` {}", variation_.map, variation_.key, problem),
+                std::move(remedy));
+  }
+
+  const schema::Variation& variation_;
+  const std::vector<VertexAttribute>& attributes_;
+  const ComponentInputs& inputs_;
+  const Component& component_;
+};
+
+}  // namespace
+
+std::vector<MappedNumber> read_maps(const schema::Variations& variations, const schema::Table& keys,
+                                    const std::vector<VertexAttribute>& attributes,
+                                    const ComponentInputs& inputs, const Component& component) {
+  std::vector<MappedNumber> maps;
+  for (std::size_t i = 0; i < variations.size(); ++i) {
+    const schema::Variation& variation = variations[i];
+    if (!variation.is_map()) continue;
+    maps.push_back({variation, keys.find(variation.key)->unit, i,
+                    MapReader(variation, attributes, inputs, component).weights()});
+  }
+  return maps;
+}
+
+std::vector<MappedNumber> over_lattice(const std::vector<MappedNumber>& maps, const Mesh& mesh,
+                                       const Lattice& lattice) {
+  std::vector<MappedNumber> result = maps;
+  if (maps.empty()) return result;
+  const std::vector<Vec3i> triangles = triangulate(mesh).triangles;
+  const ClosestPointQuery nearest(mesh.positions, triangles);
+  for (MappedNumber& map : result) map.weights.resize(lattice.vertex_count());
+  parallel_for(lattice.vertex_count(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const ClosestPoint at = nearest(lattice.rest_position(v));
+      const Vec3i& corners = triangles[static_cast<std::size_t>(at.triangle)];
+      for (std::size_t m = 0; m < maps.size(); ++m) {
+        double weight = 0;
+        for (int c = 0; c < 3; ++c)
+          weight += at.barycentric[c] * maps[m].weights[static_cast<std::size_t>(corners[c])];
+        result[m].weights[v] = std::clamp(weight, 0.0, 1.0);
+      }
+    }
+  });
+  return result;
+}
+
+std::uint64_t maps_hash(const std::vector<MappedNumber>& maps, std::uint64_t seed) {
+  for (const MappedNumber& map : maps) {
+    std::vector<double> numbers;
+    numbers.reserve(map.weights.size());
+    for (std::size_t v = 0; v < map.weights.size(); ++v) numbers.push_back(map.at(v));
+    seed = hash_bytes(map.variation.key.data(), map.variation.key.size(), seed);
+    seed = hash_bytes(numbers.data(), numbers.size() * sizeof(double), seed);
+  }
+  return seed;
+}
+
+}  // namespace muslin

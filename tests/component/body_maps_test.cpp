@@ -1,0 +1,197 @@
+// Numbers of materials vary by maps over shells and lattices.
+#include "muslin/component/body_maps.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cache/scratch.hpp"
+#include "support/sheet.hpp"
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "muslin/component/shell/shell_body.hpp"
+#include "muslin/core/index.hpp"
+#include "muslin/simulation/simulation.hpp"
+
+namespace muslin {
+namespace {
+
+using test::Scratch;
+using testing::HasSubstr;
+
+constexpr int columns = 20, rows = 4;  // of squares
+constexpr double length = 1, width = 0.2;
+
+/// A sheet along x, with `ramp.csv` beside the scene: x of each vertex over the length. A group `end` has the
+/// last column.
+class Maps : public testing::Test {
+ protected:
+  Maps() : sheet_(test::flat_sheet(columns, rows, length, width)) {
+    std::string ramp = "weight\n";
+    for (const Vec3& p : sheet_.positions) ramp += fmt::format("{}\n", p.x() / length);
+    write("ramp.csv", ramp);
+    MeshGroup end{"end", {}, {}};
+    for (std::size_t v = 0; v < sheet_.vertex_count(); ++v)
+      if (sheet_.positions[v].x() > 0.99 * length) end.vertices.push_back(static_cast<int>(v));
+    sheet_.groups = {end};
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(scratch_.path() / name) << text;
+  }
+  /// A body held at x = 0 with these keys.
+  std::shared_ptr<const Model> model(const std::string& keys, const std::string& rest = "") const {
+    Scene scene = parse_scene(
+        "[time]\nduration = 4\nframe_rate = 25\nsteps_per_frame = 1\n[[body]]\nname = "
+        "'strip'\nmesh = 'sheet'\ncontact = false\n" +
+            keys + "\n[[pin]]\nwhere = { box = [[-0.001, -1, -1], [0.001, 1, 1]] }\n" + rest,
+        scratch_.path() / "scene.toml");
+    scene.meshes["sheet"] = std::make_shared<Mesh>(sheet_);
+    return std::make_shared<const Model>(build_model(scene));
+  }
+  std::string complaint(const std::string& numbers) const {
+    try {
+      model(shell + numbers + " }");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  static std::vector<Vec3> run(const std::shared_ptr<const Model>& model, int frames) {
+    Simulation simulation(model);
+    for (int f = 0; f < frames; ++f) simulation.advance();
+    const ConstVectors x = simulation.state().positions;
+    return {x.begin(), x.end()};
+  }
+  /// Compares runs with numbers and with maps of those values, bit by bit.
+  void expect_equal_bits(const std::string& body,
+                         const std::vector<std::pair<std::string, std::string>>& numbers) {
+    std::string plain, mapped;
+    const char* comma = "";
+    for (const auto& [key, value] : numbers) {
+      plain += fmt::format("{}{} = {}", comma, key, value);
+      mapped += fmt::format("{}{} = {{ map = 'ramp.csv', from = {}, to = {} }}", comma, key, value, value);
+      comma = ", ";
+    }
+    const std::string gravity = "[[force]]\ntype = 'gravity'\n";
+    const std::vector<Vec3> one = run(model(body + plain + " }", gravity), 4);
+    const std::vector<Vec3> other = run(model(body + mapped + " }", gravity), 4);
+    ASSERT_EQ(one.size(), other.size());
+    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(Vec3)), 0);
+  }
+
+  static constexpr const char* shell =
+      "model = 'shell'\nwarp = [1, 0, 0]\nmaterial = { areal_density = 0.1, membrane_warp = 100, "
+      "bending_warp = "
+      "1e-5, ";
+  Scratch scratch_;
+  Mesh sheet_;
+};
+
+TEST_F(Maps, OfOneValueEqualTheNumberBitForBit) {
+  expect_equal_bits("model = 'shell'\nwarp = [1, 0, 0]\nmaterial = { ", {{"areal_density", "0.1"},
+                                                                         {"membrane_warp", "90"},
+                                                                         {"membrane_weft", "70"},
+                                                                         {"bending_warp", "1e-5"},
+                                                                         {"bending_weft", "2e-5"},
+                                                                         {"stretch_limit", "1.1"},
+                                                                         {"mass_damping", "0.3"},
+                                                                         {"stiffness_damping", "0.01"},
+                                                                         {"bending_damping", "0.02"}});
+  const std::string lattice = "thickness = 0.05\nvoxel_width = 0.05\nmaterial = { ";
+  expect_equal_bits(lattice, {{"density", "90"},
+                              {"edge_modulus", "3000"},
+                              {"face_diagonal_modulus", "700"},
+                              {"body_diagonal_modulus", "300"},
+                              {"volume_modulus", "100"},
+                              {"mass_damping", "0.3"}});
+  expect_equal_bits(lattice + "law = 'neo_hookean', density = 90, ",
+                    {{"youngs_modulus", "3000"}, {"stiffness_damping", "0.01"}});
+}
+
+TEST_F(Maps, OfDensityGiveTheIntegralAsMass) {
+  const std::string linear = "{ map = 'ramp.csv', from = 0.1, to = 0.4 }";
+  const auto cloth = model("model = 'shell'\nmaterial = { areal_density = " + linear +
+                           ", membrane_warp = 100, bending_warp = 1e-5 }");
+  EXPECT_NEAR(cloth->bodies[0].statistics.mass, 0.25 * length * width, 1e-12);
+  const auto block = model("thickness = 0.05\nvoxel_width = 0.05\nmaterial = { density = " + linear +
+                           ", edge_modulus = 3000, face_diagonal_modulus = 700 }");
+  EXPECT_NEAR(block->bodies[0].statistics.mass, 0.25 * length * width * 0.05, 1e-9);
+}
+
+TEST_F(Maps, OfStiffnessStretchAStripAsSpringsInSeries) {
+  // Under a force per width F the strain is F/K(x): the end moves by ∫ F/K dx = F L ln(K₁/K₀)/(K₁ − K₀).
+  const double force = 0.05, soft = 50, stiff = 200;
+  const auto strip = model(
+      "model = 'shell'\nwarp = [1, 0, 0]\nmaterial = { areal_density = 0.1, membrane_warp = { map = "
+      "'ramp.csv', "
+      "from = 50, to = 200 }, bending_warp = 1e-5, poisson = 0, mass_damping = 40 }",
+      fmt::format("[[force]]\ntype = 'point'\nforce = [{}, 0, 0]\nwhere = {{ group = 'end' }}\n",
+                  force * width / (rows + 1)));
+  const std::vector<Vec3> x = run(strip, 100);
+  const double expected = force * length * std::log(stiff / soft) / (stiff - soft);
+  double mean = 0;
+  for (int k = 0; k <= rows; ++k) mean += (x[at(columns + k * (columns + 1))].x() - length) / (rows + 1);
+  EXPECT_NEAR(mean, expected, 0.02 * expected);
+}
+
+TEST_F(Maps, WeightTheVerticesOfAGroup) {
+  const auto cloth = model(std::string(shell) + "stretch_limit = { map = 'end', from = 1.2, to = 1.1 } }");
+  const MappedNumber& map = cloth->bodies[0].maps.front();
+  EXPECT_EQ(map.at(0), 1.2);
+  EXPECT_EQ(map.at(columns), 1.1);
+  EXPECT_EQ(as_shell(cloth->bodies[0])->stretch_limit(), 1.2) << "the largest";
+}
+
+TEST_F(Maps, LetNumbersThatFollowFromOthersFollowEverywhere) {
+  const auto cloth = model(
+      "model = 'shell'\nmaterial = { areal_density = 0.1, membrane_warp = { map = 'ramp.csv', from = 10, to "
+      "= 30 "
+      "}, bending_warp = { map = 'ramp.csv', from = 1e-6, to = 1e-4 } }");
+  const ShellBody& body = *as_shell(cloth->bodies[0]);
+  for (std::size_t t = 0; t < body.shell.triangles.size(); ++t) {
+    const ShellMaterial& m = body.material_at(t);
+    EXPECT_EQ(m.membrane_weft, m.membrane_warp);
+    EXPECT_DOUBLE_EQ(m.membrane_shear, m.membrane_warp / 2.5);
+    EXPECT_DOUBLE_EQ(m.bending_bias, m.bending_warp);
+  }
+}
+
+TEST_F(Maps, ChangeTheHashThatASavedStateMustFit) {
+  const std::string numbers = std::string(shell) + "mass_damping = { map = 'ramp.csv', from = 1, to = ";
+  const auto hash = [&](const std::string& to) {
+    return model(numbers + to + " } }")->bodies[0].material_hash(0);
+  };
+  EXPECT_EQ(hash("2"), hash("2"));
+  EXPECT_NE(hash("2"), hash("3"));
+}
+
+TEST_F(Maps, ThatAreWrongAreErrorsAtTheirPlace) {
+  write("short.csv", "1\n0\n");
+  write("text.csv", "weight\n0.5\nnan\n");
+  const auto with = [&](const std::string& map) {
+    return complaint("mass_damping = { map = '" + map + "', from = 1, to = 2 }");
+  };
+  EXPECT_THAT(with("short.csv"),
+              HasSubstr("the map `short.csv` of `mass_damping` has 2 numbers, but the mesh of "
+                        "body `strip` has 105 vertices"));
+  EXPECT_THAT(with("short.csv"), HasSubstr("scene.toml:11:"));
+  EXPECT_THAT(with("text.csv"), HasSubstr("line 3: a number 'nan' is not a finite number"));
+  EXPECT_THAT(with("none.npy"), HasSubstr("cannot read"));
+  EXPECT_THAT(with("ende"),
+              HasSubstr("is no attribute or group of the mesh of body `strip`; did you mean `end`?"));
+  EXPECT_THAT(complaint("mass_damping = { map = 'ramp.csv', from = 1, to = 2, highest = 0.5 }"),
+              HasSubstr("is 0.55 at vertex 11, counted from 0, which is not between 0 and 0.5"));
+  EXPECT_THAT(complaint("bending_bias = { map = 'ramp.csv', from = 1e-7, to = 2e-5 }"),
+              HasSubstr("at polygon 1: with"));
+  EXPECT_THAT(complaint("weft_curve = [[0.1, 2]], mass_damping = { map = 'ramp.csv', from = 1, to = 2 }"),
+              HasSubstr("maps and measured curves are in one material"));
+}
+
+}  // namespace
+}  // namespace muslin
