@@ -92,7 +92,7 @@ class Coupler {
   }
 
   EvenCurvatures even() const {
-    const Mat3 root = rigidity_.llt().matrixU();
+    const Mat3 root = rigidities_.front().llt().matrixU();
     return {rows_of<Vec3>([&](const Vec3& curvature) -> Vec3 { return root * curvature; }), root};
   }
 
@@ -517,7 +517,7 @@ EvenCurvatures even_curvatures(const Shell& shell, const BendingModuli& moduli,
                                std::span<const std::uint8_t> held) {
   require(moduli.warp > 0 || moduli.weft > 0 || moduli.bias > 0, "a plate has no bending rigidity",
           "give a modulus above 0");
-  return Coupler(shell, moduli, held).even();
+  return Coupler(shell, std::span(&moduli, 1), held).even();
 }
 
 }  // namespace muslin
