@@ -42,15 +42,17 @@ TEST(SceneTable, EveryKeyIsDescribedReadAndUnique) {
   EXPECT_GT(tables.size(), 15u);
 }
 
-TEST(SceneTable, ColoursTitlesAndSettingsOutsideBodiesMayChangeOnResume) {
-  for (const char* path :
-       {"title", "time.duration", "time.steps_per_frame", "solver.effort", "contact.distance",
-        "pin.0.where.nearest.1", "pin.-", "force.1", "probe.0.at.2", "body.0.colour.2", "body.1.friction",
-        "body.1.stretch_limit", "collider.0.keyframes.0.time", "collider.0.friction", "collider.2.colour"})
+TEST(SceneTable, ColoursTitlesStiffnessAndSettingsOutsideBodiesMayChangeOnResume) {
+  for (const char* path : {"title", "time.duration", "time.steps_per_frame", "solver.effort",
+                           "contact.distance", "pin.0.where.nearest.1", "pin.-", "force.1", "probe.0.at.2",
+                           "body.0.colour.2", "body.1.friction", "body.1.stretch_limit",
+                           "body.0.material.edge_modulus", "body.0.material.bending_warp.keyframes.1.value",
+                           "collider.0.keyframes.0.time", "collider.0.friction", "collider.2.colour"})
     EXPECT_TRUE(schema::may_change_on_resume(scene_table(), path)) << path;
   for (const char* path :
-       {"time.frame_rate", "body.0.mesh", "body.0.material.density", "body.0.voxel_width", "body.2", "body.-",
-        "collider.0.density", "collider.1", "collider.0.pivot.0", "nothing"})
+       {"time.frame_rate", "body.0.mesh", "body.0.material.density", "body.0.material.areal_density",
+        "body.0.material.law", "body.0.voxel_width", "body.2", "body.-", "collider.0.density", "collider.1",
+        "collider.0.pivot.0", "nothing"})
     EXPECT_FALSE(schema::may_change_on_resume(scene_table(), path)) << path;
 }
 

@@ -206,20 +206,22 @@ std::optional<TomlValue> default_of(const Table& table, const Key& key) {
 }
 
 bool may_change_on_resume(const Table& table, std::string_view path) {
-  const Table* at = &table;
-  while (!path.empty()) {
-    const std::size_t dot = path.find('.');
-    const std::string_view part = path.substr(0, dot);
-    path = dot == path.npos ? std::string_view() : path.substr(dot + 1);
-    const bool is_index = part.find_first_not_of("0123456789-") == part.npos;
-    if (is_index) continue;
-    const Key* key = at->find(part);
-    if (key == nullptr) return false;
-    if (key->may_change_on_resume) return true;
-    if (key->table == nullptr) return false;
-    at = &key->table();
-  }
-  return false;
+  const std::size_t dot = path.find('.');
+  const std::string_view part = path.substr(0, dot);
+  const std::string_view rest = dot == path.npos ? std::string_view() : path.substr(dot + 1);
+  if (path.empty()) return false;
+  const bool is_index = part.find_first_not_of("0123456789-") == part.npos;
+  if (is_index) return may_change_on_resume(table, rest);
+  const auto allows = [&](const Key& key) {
+    return key.name == part &&
+           (key.may_change_on_resume || (key.table != nullptr && may_change_on_resume(key.table(), rest)));
+  };
+  // Variants may have keys of one name with different tables.
+  return std::any_of(table.keys.begin(), table.keys.end(), allows) ||
+         std::any_of(table.variants.begin(), table.variants.end(), [&](const Variant& variant) {
+           const std::vector<Key>& keys = variant.table().keys;
+           return std::any_of(keys.begin(), keys.end(), allows);
+         });
 }
 
 }  // namespace muslin::schema
