@@ -13,6 +13,7 @@
 #include "muslin/force/drag_field.hpp"
 #include "muslin/force/field_force.hpp"
 #include "muslin/force/gravity.hpp"
+#include "muslin/force/grid_pattern.hpp"
 #include "muslin/force/simple_patterns.hpp"
 #include "muslin/force/turbulence.hpp"
 
@@ -124,6 +125,27 @@ TEST(Fields, CurveGuidesAlongItsTangentAndAttracts) {
   const Vec3 before = corner.at(Vec3(1 - 1e-9, 0, 0), 0), after = corner.at(Vec3(1, 1e-9, 0), 0);
   EXPECT_LT((before - after).norm(), 1e-8);
   EXPECT_LT((after - Vec3(1, 1, 0).normalized()).norm(), 1e-8);
+}
+
+TEST(Fields, GridReproducesALinearFieldAndIsZeroOutside) {
+  const Vec3 origin(-1, 0.5, 2), spacing(0.5, 0.25, 1);
+  const auto linear = [](const Vec3& x) {
+    return Vec3(1 + 2 * x.x() - x.z(), 3 * x.y(), x.x() - x.y() + 4 * x.z());
+  };
+  VectorGrid grid{{5, 3, 4}, {}};
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 4; ++k)
+        grid.vectors.push_back(linear(origin + Vec3(i, j, k).cwiseProduct(spacing)));
+  const GridPattern pattern(grid, origin, spacing);
+  for (const Vec3& r : test::random_vectors(200, 1, 5)) {
+    const Vec3 x = origin + 0.5 * (r + Vec3::Ones()).cwiseProduct(Vec3(2, 0.5, 3));
+    EXPECT_LT((pattern.at(x, 0).vector - linear(x)).norm(), 1e-13);
+  }
+  const Vec3 far = origin + Vec3(2, 0.5, 3);
+  EXPECT_LT((pattern.at(far, 0).vector - linear(far)).norm(), 1e-13);
+  EXPECT_EQ(pattern.at(far + Vec3(0, 1e-9, 0), 0).vector, Vec3::Zero());
+  EXPECT_EQ(pattern.at(origin - Vec3(1e-9, 0, 0), 0).vector, Vec3::Zero());
 }
 
 TEST(Fields, TravelCarriesThePatternAndLeavesTheRegion) {

@@ -8,6 +8,7 @@
 #include "muslin/force/curve_pattern.hpp"
 #include "muslin/force/drag_field.hpp"
 #include "muslin/force/field_force.hpp"
+#include "muslin/force/grid_pattern.hpp"
 #include "muslin/force/simple_patterns.hpp"
 #include "muslin/force/turbulence.hpp"
 #include "muslin/scene/common_keys.hpp"
@@ -27,15 +28,32 @@ constexpr std::size_t most_points = 1000;  // every vertex looks for the nearest
 using Pattern = std::shared_ptr<const FieldPattern>;
 struct PatternRow {
   const char* type;
-  Pattern (*make)(const Own& own);
+  Pattern (*make)(const Scene& scene, const Own& own);
 };
+
+Pattern read_grid(const Scene& scene, const Own& own) {
+  try {
+    return std::make_shared<GridPattern>(read_vector_grid(resolve_path(scene, own.file)), own.origin,
+                                         own.spacing);
+  } catch (const Error& error) {
+    // Errors of the system have the file as their place, those of its content in their words.
+    const std::string& file = error.place().file;
+    throw Error(error.kind(), own.file_place,
+                file.empty() ? error.problem() : fmt::format("{}: {}", file, error.problem()),
+                error.remedy());
+  }
+}
+
 const PatternRow pattern_rows[] = {
-    {"uniform", [](const Own& own) -> Pattern { return std::make_shared<UniformPattern>(own.direction); }},
-    {"radial", [](const Own&) -> Pattern { return std::make_shared<RadialPattern>(); }},
+    {"uniform",
+     [](const Scene&, const Own& own) -> Pattern { return std::make_shared<UniformPattern>(own.direction); }},
+    {"radial", [](const Scene&, const Own&) -> Pattern { return std::make_shared<RadialPattern>(); }},
     {"vortex",
-     [](const Own& own) -> Pattern { return std::make_shared<VortexPattern>(own.axis, own.radius); }},
+     [](const Scene&, const Own& own) -> Pattern {
+       return std::make_shared<VortexPattern>(own.axis, own.radius);
+     }},
     {"turbulence",
-     [](const Own& own) -> Pattern {
+     [](const Scene&, const Own& own) -> Pattern {
        Turbulence::Settings settings;
        settings.largest = own.largest;
        settings.smallest = own.smallest.value_or(own.largest / 8);
@@ -43,8 +61,9 @@ const PatternRow pattern_rows[] = {
        settings.seed = static_cast<std::uint64_t>(own.seed);
        return std::make_shared<Turbulence>(settings);
      }},
+    {"grid", read_grid},
     {"curve",
-     [](const Own& own) -> Pattern {
+     [](const Scene&, const Own& own) -> Pattern {
        return std::make_shared<CurvePattern>(CurvePattern::Settings{own.points, own.attraction, own.reach});
      }},
 };
@@ -108,8 +127,9 @@ void add_vectors(Model& model, const ForceSettings& force) {
   }
   model.loads.push_back(
       {force.name, EnergyRole::work,
-       std::make_shared<FieldForce>(masses_acted_on(model, force),
-                                    Field{extent_of(force), row_of(force)->make(force.own.as<Own>())})});
+       std::make_shared<FieldForce>(
+           masses_acted_on(model, force),
+           Field{extent_of(force), row_of(force)->make(model.scene, force.own.as<Own>())})});
 }
 
 void add_drag(Model& model, const ForceSettings& force) {
@@ -232,6 +252,26 @@ const schema::Table& turbulence_keys() {
   return table;
 }
 
+const schema::Table& grid_keys() {
+  static const schema::Table table = field_table(
+      "grid", vector_keys(),
+      {schema::path("file", &Own::file, &Own::file_place)
+           .required()
+           .means(
+               "a `.npy` file with an array of shape (nx, ny, nz, 3), float32 or float64: the vectors at the "
+               "nodes, linear between them, 0 outside"),
+       schema::vector("origin", &Own::origin).unit("m").means("the first node, relative to the centre"),
+       schema::vector("spacing", &Own::spacing)
+           .unit("m")
+           .means("distances of the nodes along x, y and z, above 0")},
+      [](const Own& own, const Subject& subject) {
+        check_wind(own, subject);
+        if (!(own.spacing.minCoeff() > 0))
+          throw subject.error("spacing", "a distance of `spacing` is not above 0", "give three above 0");
+      });
+  return table;
+}
+
 const schema::Table& curve_keys() {
   static const schema::Table table = field_table(
       "curve", vector_keys(),
@@ -296,6 +336,7 @@ const std::vector<ForceKind>& field_kinds() {
       {.name = "radial", .keys = radial_keys, .add = add_vectors},
       {.name = "vortex", .keys = vortex_keys, .add = add_vectors},
       {.name = "turbulence", .keys = turbulence_keys, .add = add_vectors},
+      {.name = "grid", .keys = grid_keys, .add = add_vectors},
       {.name = "curve", .keys = curve_keys, .add = add_vectors},
       {.name = "drag", .keys = drag_keys, .add = add_drag}};
   return kinds;
@@ -305,7 +346,7 @@ std::vector<Field> fields_in_air(const Scene& scene, const ForceSettings& wind, 
   std::vector<Field> fields;
   for (const ForceSettings& force : scene.forces) {
     if (!moves_air(force) || !force.acts_on(body) || &wind_of(scene, force) != &wind) continue;
-    fields.push_back({extent_of(force), row_of(force)->make(force.own.as<Own>())});
+    fields.push_back({extent_of(force), row_of(force)->make(scene, force.own.as<Own>())});
   }
   return fields;
 }

@@ -35,6 +35,11 @@ struct FieldForceSettings {
   std::optional<double> turnover;  ///< turbulence: turnover time of the largest eddies [s]; none: frozen
   std::int64_t seed = 1;           ///< turbulence
 
+  std::string file;  ///< grid: path of an array of vectors
+  Place file_place;
+  Vec3 origin = Vec3::Zero();   ///< grid: its first node, relative to the centre [m]
+  Vec3 spacing = Vec3::Ones();  ///< grid: of the nodes along each axis [m]
+
   std::vector<Vec3> points;  ///< curve [m]
   double attraction = 0;     ///< curve
   double reach = 0.1;        ///< curve: where the attraction is full [m]
