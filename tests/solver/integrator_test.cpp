@@ -6,6 +6,7 @@
 
 #include "support/flag.hpp"
 #include "support/simple_potentials.hpp"
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "muslin/potential/mass_damping.hpp"
@@ -30,7 +31,10 @@ struct Particle {
     const StepContext context = step_context(settings.integrator, state, dt);
     const auto acting = load != nullptr ? load->potential(context) : nullptr;
     StepProblem problem{masses, {&potential}, fixed, targets};
-    if (acting) problem.potentials.push_back(acting.get());
+    if (acting) {
+      problem.potentials.push_back(acting.get());
+      problem.dampings.push_back(acting.get());
+    }
     return solve_step(settings, context, problem, state);
   }
 };
@@ -161,6 +165,48 @@ TEST(SymplecticEuler, KeepsTheEnergyOfAnOscillator) {
     const double energy =
         25 * particle.state.positions[0].squaredNorm() + particle.state.velocities[0].squaredNorm();
     ASSERT_NEAR(energy, 25, 25 * 0.055);
+  }
+}
+
+/// Dashpots of a damping ratio: C = β K with ζ = βω/2.
+class DampedWell : public Load {
+ public:
+  DampedWell(double k, double ratio) : c_(2 * ratio * std::sqrt(k)) {}
+  std::unique_ptr<Potential> potential(const StepContext& step) const override {
+    return std::make_unique<Dashpot>(c_ / step.dt, step.anchor[0]);
+  }
+
+ private:
+  class Dashpot : public test::Wells {
+   public:
+    Dashpot(double c, const Vec3& anchor) : Wells(c), anchor_(anchor) {}
+    double value(ConstVectors x) const override { return Wells::value(std::vector<Vec3>{x[0] - anchor_}); }
+    void add_gradient(ConstVectors x, Vectors g) const override {
+      Wells::add_gradient(std::vector<Vec3>{x[0] - anchor_}, g);
+    }
+
+   private:
+    Vec3 anchor_;
+  };
+  double c_;
+};
+
+TEST(SymplecticEuler, IsStableUpToTheStepOfADampedOscillator) {
+  const double omega = 20;
+  const test::Wells well(omega * omega);
+  for (const double ratio : {0.0, 0.1, 1.0, 30.0}) {
+    const DampedWell damping(omega * omega, ratio);
+    const double longest = 2 / omega * (std::sqrt(1 + ratio * ratio) - ratio);
+    Particle stable(Vec3(1, 0, 0));
+    for (int n = 0; n < 2000; ++n)
+      ASSERT_TRUE(stable.step(tight(Integrator::symplectic_euler), 0.99 * longest, well, &damping).converged);
+    EXPECT_LT(stable.state.positions[0].norm(), 20) << ratio;  // without damping 10 near the limit
+    Particle unstable(Vec3(1, 0, 0));
+    const StepReport report =
+        unstable.step(tight(Integrator::symplectic_euler), 1.01 * longest, well, &damping);
+    EXPECT_FALSE(report.converged) << ratio;
+    EXPECT_NE(report.failure.find(fmt::format("step is about {:.3g} s", longest)), std::string::npos)
+        << report.failure;
   }
 }
 

@@ -94,8 +94,9 @@ void add_changing_terms(Component& component, ChangingComponent changing) {
     const std::shared_ptr<const Component> at_time = components->at(time);
     for (const PotentialTerm& term : at_time->potentials) add(term.name, term.role);
     for (const LoadTerm& term : at_time->loads) add(term.name, term.role);
-    if (at_time->statistics.stable_step <= component.statistics.stable_step)
-      component.statistics = at_time->statistics;
+    BodyStatistics& s = component.statistics;
+    s.stable_step = std::min(s.stable_step, at_time->statistics.stable_step);
+    s.undamped_step = std::min(s.undamped_step, at_time->statistics.undamped_step);
   }
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -18,8 +17,8 @@ namespace muslin {
 namespace {
 
 /// The linear solver works in single precision while ‖block‖ dt² / mass is below 3e5. In units of
-/// BodyStatistics::stable_step, which is 2/√ratio or less, that is a step of this length.
-constexpr double stable_steps = 150;
+/// BodyStatistics::undamped_step, which is 2/√ratio or less, that is a step of this length.
+constexpr double undamped_steps = 150;
 
 }  // namespace
 
@@ -33,7 +32,7 @@ std::vector<int> Component::parts() const {
   return std::vector<int>(static_cast<std::size_t>(vertex_count), 0);
 }
 
-double Component::longest_step() const { return stable_steps * statistics.stable_step; }
+double Component::longest_step() const { return undamped_steps * statistics.undamped_step; }
 
 void Component::predict(Integrator /*integrator*/, const State& /*state*/,
                         std::span<const std::uint8_t> /*fixed*/, StepContext& /*context*/) const {}
@@ -122,16 +121,6 @@ Embedding identity_embedding(std::size_t count) {
   }
   embedding.prepare_transpose(count);
   return embedding;
-}
-
-double stable_step(std::span<const Mat3> blocks, std::span<const double> masses) {
-  double largest = 0;
-  for (std::size_t v = 0; v < blocks.size(); ++v) {
-    Eigen::SelfAdjointEigenSolver<Mat3> solver;
-    solver.computeDirect(blocks[v], Eigen::EigenvaluesOnly);
-    largest = std::max(largest, solver.eigenvalues().maxCoeff() / masses[v]);
-  }
-  return largest > 0 ? 2 / std::sqrt(largest) : std::numeric_limits<double>::infinity();
 }
 
 void weigh(Component& component) {

@@ -43,8 +43,10 @@ struct BodyStatistics {
   double coverage = 1;                     ///< share of the mesh's area inside kept voxels
   double contour_distance = 0;             ///< largest distance of the rest contour from the solid [m]
   std::int64_t triangles = 0, hinges = 0;  ///< of a shell's or collider's mesh
-  /// Largest stable step of symplectic_euler at rest [s]; infinity without stiffness.
+  /// A stable step of symplectic_euler at rest, with damping [s]; infinity without stiffness and damping.
   double stable_step = std::numeric_limits<double>::infinity();
+  /// Without damping: at most 2/ω of the highest frequency [s].
+  double undamped_step = std::numeric_limits<double>::infinity();
 };
 
 /// A point of a component.
@@ -184,11 +186,6 @@ class MUSLIN_API Component {
 
 /// Returns the embedding whose points are the vertices: J = 1. Prepared for the transpose.
 MUSLIN_API Embedding identity_embedding(std::size_t count);
-
-/// Returns the step below which symplectic Euler is stable [s] for a component whose elements over n vertices
-/// have the given diagonal blocks, already multiplied by n: an element stores ½ k (Σ aᵢ·dᵢ)² ≤ ½ k n Σ
-/// (aᵢ·dᵢ)², so that ω² ≤ n λ(block)/m, and the step is 2/ω.
-MUSLIN_API double stable_step(std::span<const Mat3> blocks, std::span<const double> masses);
 
 /// Fills in statistics.mass, the sum of masses() in their order.
 MUSLIN_API void weigh(Component& component);

@@ -219,7 +219,7 @@ class AttachmentBuilder {
   /// Returns the stiffness of a stiff joint at a point.
   static double material(const Component& component, const JointPoint& point) {
     if (point.mass == 0) return std::numeric_limits<double>::infinity();
-    const double step = component.statistics.stable_step;
+    const double step = component.statistics.undamped_step;
     return std::isfinite(step) ? soft_share * point.mass / (step * step)
                                : rigid_share * point.mass / (stopping_time * stopping_time);
   }

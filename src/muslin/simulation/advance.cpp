@@ -48,8 +48,11 @@ class Advance {
                         scratch_.parts.edges};
     problem.in_double = halvings >= patience();
     for (const PotentialTerm& term : terms_.potentials) problem.potentials.push_back(term.potential.get());
-    for (const auto& load : loads)
-      if (load) problem.potentials.push_back(load.get());
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      if (!loads[i]) continue;
+      problem.potentials.push_back(loads[i].get());
+      if (terms_.loads[i].role == EnergyRole::dissipation) problem.dampings.push_back(loads[i].get());
+    }
     StepReport report = scratch_.stepper.step(settings, context, problem, state_.motion);
     const bool missed = report.made() && !report.converged && halvings < patience() &&
                         settings.integrator != Integrator::linearly_implicit_euler;

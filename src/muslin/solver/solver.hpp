@@ -80,6 +80,8 @@ struct StepProblem {
   /// True: linear systems in which float loses the masses against the stiffnesses are solved in double,
   /// slowly. False: a step with such a system ends without convergence; shorter steps may fit float.
   bool in_double = true;
+  /// Those of `potentials` that damp: ½ (x − anchor)ᵀ C (x − anchor)/dt, with C the damping matrix.
+  std::vector<const Potential*> dampings = {};
 };
 
 struct StepReport {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "muslin/component/changing_terms.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/component/solid.hpp"
+#include "muslin/component/stability_bound.hpp"
 #include "muslin/core/progress_part.hpp"
 #include "muslin/energy/element_energy.hpp"
 #include "muslin/energy/solid_laws.hpp"
@@ -158,6 +160,9 @@ class LatticeTerms {
                                material.body_diagonal_modulus};
     Lattice lattice = body_.lattice;
     lattice.fill = body_.voxel_shares();
+    std::vector<Vec3> rest(lattice.vertex_count());
+    for (std::size_t v = 0; v < rest.size(); ++v) rest[v] = lattice.rest_position(v);
+    StabilityBound bound(rest);
     std::shared_ptr<const Load> damping;
     if (const SolidLaw* law = find_solid_law(material.law)) {
       const auto pattern = tetrahedron_pattern(body_.lattice);
@@ -167,7 +172,7 @@ class LatticeTerms {
       const Lattice stiff = filled(lattice, "youngs_modulus");
       const auto solid = made(stiff);
       body_.potentials.push_back({"solid", EnergyRole::elastic, solid});
-      add_blocks(*solid, 4);
+      bound.add(*solid, 4, greatest("stiffness_damping", material.stiffness_damping));
       const MappedNumber* damped = find_map(body_.maps, "stiffness_damping");
       const bool even = damped == nullptr || damped->variation.from == damped->variation.to;
       damping = std::make_shared<ElementDamping>(even ? solid : made(filled(stiff, "stiffness_damping")),
@@ -176,14 +181,14 @@ class LatticeTerms {
       const auto springs = std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli,
                                                           varied(spring_weights()), body_.network);
       body_.potentials.push_back({"springs", EnergyRole::elastic, springs});
-      add_blocks(*springs, 2);
+      bound.add(*springs, 2, material.stiffness_damping);
       damping = std::make_shared<SpringDamping>(springs, material.stiffness_damping);
     }
     if (material.volume_modulus > 0) {
       const auto volume =
           std::make_shared<VolumeEnergy>(filled(lattice, "volume_modulus"), material.volume_modulus);
       body_.potentials.push_back({"volume", EnergyRole::elastic, volume});
-      add_blocks(*volume, 4);
+      bound.add(*volume, 4, 0);
     }
     const std::vector<double> masses = body_.masses();
     if (material.stiffness_damping > 0)
@@ -195,7 +200,7 @@ class LatticeTerms {
       body_.loads.push_back({"mass damping", EnergyRole::dissipation,
                              std::make_shared<MassDamping>(material.mass_damping, std::move(damped))});
     }
-    body_.statistics.stable_step = stable_step(blocks_, masses);
+    bound.apply(masses, greatest("mass_damping", material.mass_damping), body_.statistics);
   }
 
   /// Returns #springs factors of the spring constants; empty if all are 1.
@@ -230,19 +235,15 @@ class LatticeTerms {
     return lattice;
   }
 
-  void add_blocks(const Potential& potential, double vertices_of_element) {
-    std::vector<Mat3> blocks(body_.lattice.vertex_count(), Mat3::Zero());
-    std::vector<Vec3> rest(blocks.size());
-    for (std::size_t v = 0; v < rest.size(); ++v) rest[v] = body_.lattice.rest_position(v);
-    potential.add_diagonal_blocks(rest, blocks);
-    if (blocks_.empty()) blocks_.assign(blocks.size(), Mat3::Zero());
-    for (std::size_t v = 0; v < blocks.size(); ++v) blocks_[v] += vertices_of_element * blocks[v];
+  /// The greatest value of a number that may vary by a map.
+  double greatest(std::string_view key, double number) const {
+    const MappedNumber* map = find_map(body_.maps, key);
+    return map != nullptr ? std::max(map->variation.from, map->variation.to) : number;
   }
 
   const BodySettings& settings_;
   const LatticeBodySettings& own_;
   LatticeBody& body_;
-  std::vector<Mat3> blocks_;
 };
 
 void add_lattice_terms(LatticeBody& body) {

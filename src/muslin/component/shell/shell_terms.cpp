@@ -7,6 +7,7 @@
 
 #include "muslin/component/changing_terms.hpp"
 #include "muslin/component/shell/shell_body.hpp"
+#include "muslin/component/stability_bound.hpp"
 #include "muslin/energy/bending_friction.hpp"
 #include "muslin/energy/element_energy.hpp"
 #include "muslin/energy/measured_membrane.hpp"
@@ -24,7 +25,7 @@ namespace {
 class ShellTerms {
  public:
   explicit ShellTerms(ShellBody& body)
-      : body_(body), material_(body.material()), stress_(stress_of(material_)) {}
+      : body_(body), material_(body.material()), stress_(stress_of(material_)), bound_(body.mesh.positions) {}
 
   void add(std::span<const std::uint8_t> held) {
     const ShellMaterial& m = material_;
@@ -34,21 +35,21 @@ class ShellTerms {
     add("membrane", membrane);
     // The stable step is that of the stiffest state.
     if (body_.triangle_materials.empty()) {
-      add_blocks(MembraneEnergy(body_.shell, {stress_.warp.greatest_slope(), stress_.weft.greatest_slope(),
+      bound_.add(MembraneEnergy(body_.shell, {stress_.warp.greatest_slope(), stress_.weft.greatest_slope(),
                                               stress_.shear.greatest_slope(), m.poisson}),
-                 3);
+                 3, m.stiffness_damping);
     } else {
-      add_blocks(*membrane_on(nullptr, even), 3);
+      bound_.add(*membrane_on(nullptr, even), 3, greatest("stiffness_damping", m.stiffness_damping));
     }
     // The limit has no stiffness at rest, so that the stable step does not know it.
     if (body_.own().stretch_limit) add("stretch limit", limit_on(pattern));
     const auto bending = bending_on(pattern, held, even);
     add_bending(bending, held);
-    add_blocks(*bending, 2 * 4);  // blocks of half the stiffness that bounds it
+    bound_.add(*bending, 2 * 4, greatest("bending_damping", m.bending_damping));  // blocks of half the stiffness that bounds it
     if (has_bending_friction(m)) add_bending_friction(*bending, held);
     add_dampings(pattern, held, membrane, bending);
     const std::vector<double> masses = body_.masses();
-    body_.statistics.stable_step = stable_step(blocks_, masses);
+    bound_.apply(masses, greatest("mass_damping", m.mass_damping), body_.statistics);
   }
 
  private:
@@ -158,6 +159,11 @@ class ShellTerms {
       for (std::size_t v = 0; v < masses.size(); ++v) masses[v] *= map->at(v) / m.mass_damping;
     add_damping("mass damping", std::make_shared<MassDamping>(m.mass_damping, std::move(masses)));
   }
+  /// The greatest value of a number that may vary by a map.
+  double greatest(std::string_view key, double number) const {
+    const MappedNumber* map = find_map(body_.maps, key);
+    return map != nullptr ? std::max(map->variation.from, map->variation.to) : number;
+  }
   void add_bending_friction(const ShellBending& bending, std::span<const std::uint8_t> held) {
     const ShellMaterial& m = material_;
     const BendingFrictionLimits limits{m.bending_friction_warp, m.bending_friction_weft,
@@ -167,7 +173,7 @@ class ShellTerms {
     body_.loads.push_back({"bending friction", EnergyRole::elastic, friction});
     StepContext start;
     start.positions = body_.mesh.positions;
-    add_blocks(*friction->potential(start), 2 * 4);
+    bound_.add(*friction->potential(start), 2 * 4, 0);
   }
   void add(const char* name, std::shared_ptr<const Potential> potential) {
     body_.potentials.push_back({name, EnergyRole::elastic, std::move(potential)});
@@ -175,17 +181,11 @@ class ShellTerms {
   void add_damping(const char* name, std::shared_ptr<const Load> load) {
     body_.loads.push_back({name, EnergyRole::dissipation, std::move(load)});
   }
-  void add_blocks(const Potential& potential, double vertices_of_element) {
-    std::vector<Mat3> blocks(body_.mesh.vertex_count(), Mat3::Zero());
-    potential.add_diagonal_blocks(body_.mesh.positions, blocks);
-    if (blocks_.empty()) blocks_.assign(blocks.size(), Mat3::Zero());
-    for (std::size_t v = 0; v < blocks.size(); ++v) blocks_[v] += vertices_of_element * blocks[v];
-  }
 
   ShellBody& body_;
   const ShellMaterial& material_;
   SheetStress stress_;
-  std::vector<Mat3> blocks_;
+  StabilityBound bound_;
 };
 
 }  // namespace
