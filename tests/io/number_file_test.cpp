@@ -56,8 +56,8 @@ TEST(NumberFile, ReadsArraysOfNumPy) {
   EXPECT_THAT(message(npy<float>("<f4", "(3, 1)", {1, 2, 3}), "w.npy"), HasSubstr("one dimension"));
   EXPECT_THAT(message(npy<double>("<c8", "(1,)", {1}), "w.npy"), HasSubstr("another type"));
   EXPECT_THAT(message(npy<float>("<f4", "(1,)", {std::stof("nan")}), "w.npy"),
-              HasSubstr("number 0 is not finite"));
-  EXPECT_THAT(message("NUMPY", "w.npy"), HasSubstr("not a NumPy file"));
+              HasSubstr("number 0, counted from 0, is not finite"));
+  EXPECT_THAT(message("NUMPY", "w.npy"), HasSubstr("not a file of NumPy"));
   const std::string whole = npy<float>("<f4", "(3,)", {1, 2, 3});
   for (std::size_t n = 0; n < whole.size(); ++n)
     EXPECT_NE(message(whole.substr(0, n), "w.npy"), "no error") << n << " bytes";

@@ -16,10 +16,9 @@ struct VectorGrid {
   std::vector<Vec3> vectors;          ///< of node (i, j, k) at (i size[1] + j) size[2] + k
 };
 
-/// Reads an array of shape (nx, ny, nz, 3) of float32 or float64 in C order, format version 1 to 3. Source:
-/// NumPy Enhancement Proposal 1, A Simple File Format for NumPy Arrays. Errors: file; input, if it is none,
-/// has less than two nodes along an axis, more than 2³² numbers, too few bytes, or a number that is not
-/// finite.
+/// Reads an array of shape (nx, ny, nz, 3) of floats or integers in C order (io/npy_file.hpp). Errors: file;
+/// input, with the file, if it is malformed, has another shape or order, less than two nodes along an axis,
+/// or a number that is not finite.
 VectorGrid read_vector_grid(const std::filesystem::path& path);
 
 /// From memory; `file` is for messages.

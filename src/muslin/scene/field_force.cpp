@@ -36,10 +36,7 @@ Pattern read_grid(const Scene& scene, const Own& own) {
     return std::make_shared<GridPattern>(read_vector_grid(resolve_path(scene, own.file)), own.origin,
                                          own.spacing);
   } catch (const Error& error) {
-    // Errors of the system have the file as their place, those of its content in their words.
-    const std::string& file = error.place().file;
-    throw Error(error.kind(), own.file_place,
-                file.empty() ? error.problem() : fmt::format("{}: {}", file, error.problem()),
+    throw Error(error.kind(), own.file_place, fmt::format("{}: {}", error.place().file, error.problem()),
                 error.remedy());
   }
 }
@@ -258,7 +255,7 @@ const schema::Table& grid_keys() {
       {schema::path("file", &Own::file, &Own::file_place)
            .required()
            .means(
-               "a `.npy` file with an array of shape (nx, ny, nz, 3), float32 or float64: the vectors at the "
+               "a `.npy` file with an array of shape (nx, ny, nz, 3), floats or integers: the vectors at the "
                "nodes, linear between them, 0 outside"),
        schema::vector("origin", &Own::origin).unit("m").means("the first node, relative to the centre"),
        schema::vector("spacing", &Own::spacing)
