@@ -14,11 +14,50 @@ Vector = Union[Sequence[float], npt.NDArray[np.floating[Any]]]
 Points = Union[Sequence[Vector], npt.NDArray[np.floating[Any]]]
 Path = Union[str, os.PathLike[str], Mesh]
 
+KeyframesOfAVaryingNumber = TypedDict(
+    "KeyframesOfAVaryingNumber",
+    {
+        "time": Required[float],  # time of the keyframe, later than the previous one [s]
+        "value": Required[float],  # the number at that time
+        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
+    },
+    total=False,
+)
+
+RegionPlane = TypedDict(
+    "RegionPlane",
+    {
+        "point": Required[Vector],  # a point of the plane [m]
+        "normal": Required[Vector],  # normal of the plane, on the side of the region
+    },
+    total=False,
+)
+
+RegionCylinder = TypedDict(
+    "RegionCylinder",
+    {
+        "from": Required[Vector],  # centre of one end [m]
+        "to": Required[Vector],  # centre of the other end [m]
+        "radius": Required[float],  # its radius [m]
+    },
+    total=False,
+)
+
+RegionSphere = TypedDict(
+    "RegionSphere",
+    {
+        "center": Required[Vector],  # its centre [m]
+        "radius": Required[float],  # its radius [m]
+    },
+    total=False,
+)
+
 KeyframesOfANumber = TypedDict(
     "KeyframesOfANumber",
     {
         "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "value": Required[float],  # the number at that time
+        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
     },
     total=False,
 )
@@ -52,10 +91,56 @@ WhereSphere = TypedDict(
     total=False,
 )
 
+ANumberThatVaries = TypedDict(
+    "ANumberThatVaries",
+    {
+        "map": Optional[str],  # where it varies: an attribute or group of the mesh, or a file of numbers or a picture
+        "from": Optional[float],  # the number where the map has its `lowest` value
+        "to": Optional[float],  # the number where the map has its `highest` value
+        "lowest": Optional[float],  # value of the map that stands for `from`
+        "highest": Optional[float],  # value of the map that stands for `to`
+        "curve": Optional[Points],  # points `[[weight, share], …]` between 0 and 1: the number goes from `from` to `to` by the share
+        "keyframes": Optional[Sequence["KeyframesOfAVaryingNumber"]],  # when it varies: constant before the first and after the last
+    },
+    total=False,
+)
+
+KeyframesOfAnEffort = TypedDict(
+    "KeyframesOfAnEffort",
+    {
+        "time": Required[float],  # time of the keyframe, later than the previous one [s]
+        "value": Required[Literal["draft", "normal", "exact"]],  # the effort from that time on
+    },
+    total=False,
+)
+
+Region = TypedDict(
+    "Region",
+    {
+        "box": Optional[Points],  # the box between two corners `[[x, y, z], [x, y, z]]`, the smaller coordinates first [m]
+        "sphere": Optional["RegionSphere"],  # the ball within `radius` of `center`
+        "cylinder": Optional["RegionCylinder"],  # the cylinder of this `radius` with its flat ends at `from` and `to`
+        "plane": Optional["RegionPlane"],  # the half space of the plane through `point` to which `normal` points
+        "fade": Optional[float],  # depth below its surface at which the field is full; at the surface it is 0 [m]
+    },
+    total=False,
+)
+
+Falloff = TypedDict(
+    "Falloff",
+    {
+        "power": Optional[float],  # the weight is (1 + (r − `min`) / `length`)^−`power` at the distance r
+        "min": Optional[float],  # distance up to which the weight is 1 [m]
+        "length": Optional[float],  # distance beyond `min` at which the weight is ½ for a power of 1 [m]
+        "max": Optional[float],  # distance beyond which the weight is 0 [m]
+    },
+    total=False,
+)
+
 ANumberOverTime = TypedDict(
     "ANumberOverTime",
     {
-        "keyframes": Required[Sequence["KeyframesOfANumber"]],  # a list of tables, linear between them, constant before the first and after the last
+        "keyframes": Required[Sequence["KeyframesOfANumber"]],  # a list of tables; times ascend; constant before the first and after the last
     },
     total=False,
 )
@@ -65,6 +150,7 @@ KeyframesOfWind = TypedDict(
     {
         "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "value": Required[Vector],  # `velocity` at that time [m/s]
+        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
     },
     total=False,
 )
@@ -74,6 +160,7 @@ KeyframesOfPoint = TypedDict(
     {
         "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "value": Required[Vector],  # `force` at that time [N]
+        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
     },
     total=False,
 )
@@ -83,6 +170,7 @@ KeyframesOfGravity = TypedDict(
     {
         "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "value": Required[Vector],  # `acceleration` at that time [m/s²]
+        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
     },
     total=False,
 )
@@ -106,6 +194,8 @@ KeyframesOfAMotion = TypedDict(
         "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "translate": Optional[Vector],  # displacement [m]
         "rotate": Optional[Vector],  # rotation about `pivot`: about the x axis, then y, then z [degrees]
+        "scale": Optional[Union[float, Vector]],  # of pins: scale about `pivot`, a number or one per axis; applied first
+        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
     },
     total=False,
 )
@@ -114,26 +204,29 @@ MaterialOfAShell = TypedDict(
     "MaterialOfAShell",
     {
         "base": Optional[str],  # a material by name or path that has `[shell]` numbers; the other keys change it
-        "areal_density": Optional[float],  # mass per area [kg/m²]
-        "membrane_warp": Optional[float],  # force per width and strain along warp: Young's modulus × thickness [N/m]
-        "membrane_weft": Optional[float],  # force per width and strain along weft [N/m]
-        "membrane_shear": Optional[float],  # force per width and radian [N/m]
+        "areal_density": Optional[Union[float, "ANumberThatVaries"]],  # mass per area [kg/m²]
+        "membrane_warp": Optional[Union[float, "ANumberThatVaries"]],  # force per width and strain along warp: Young's modulus × thickness [N/m]
+        "membrane_weft": Optional[Union[float, "ANumberThatVaries"]],  # force per width and strain along weft [N/m]
+        "membrane_shear": Optional[Union[float, "ANumberThatVaries"]],  # force per width and radian [N/m]
         "warp_curve": Optional[Points],  # measured, in place of `membrane_warp`: up to 10 points `[[strain, force per width], …]` of a strip pulled along warp [1, N/m]
         "weft_curve": Optional[Points],  # in place of `membrane_weft`: points of a strip pulled along weft [1, N/m]
         "shear_curve": Optional[Points],  # in place of `membrane_shear`: points `[[angle, force per length], …]` of a shear test [°, N/m]
         "poisson": Optional[float],  # Poisson's ratio of stretch and bending: geometric mean of the two directions
-        "bending_warp": Optional[float],  # moment per width and curvature when warp bends [N·m]
-        "bending_weft": Optional[float],  # moment per width and curvature when weft bends [N·m]
-        "bending_bias": Optional[float],  # moment per width and curvature for bending at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer resists twisting [N·m]
+        "bending_warp": Optional[Union[float, "ANumberThatVaries"]],  # moment per width and curvature when warp bends [N·m]
+        "bending_weft": Optional[Union[float, "ANumberThatVaries"]],  # moment per width and curvature when weft bends [N·m]
+        "bending_bias": Optional[Union[float, "ANumberThatVaries"]],  # moment per width and curvature for bending at 45°; at least (warp + weft + 2 ν √(warp weft))/4, where the sheet no longer resists twisting [N·m]
         "bending_warp_curve": Optional[Points],  # measured, in place of `bending_warp`: up to 10 points `[[curvature, moment per width], …]` [1/m, N]
         "bending_weft_curve": Optional[Points],  # in place of `bending_weft`: points `[[curvature, moment per width], …]` when weft bends [1/m, N]
         "bending_friction_warp": Optional[float],  # internal friction: greatest moment per width with which warp resists every change of curvature, half of KES-FB2's 2HB; 0 is off [N]
         "bending_friction_weft": Optional[float],  # internal friction when weft bends [N]
         "bending_friction_curvature": Optional[float],  # change of curvature over which internal friction builds up [1/m]
-        "stretch_limit": Optional[float],  # largest stretch in any direction, as length over rest length, unless the body has a `stretch_limit` of its own
-        "mass_damping": Optional[float],  # Rayleigh's α: slows all motion [1/s]
-        "stiffness_damping": Optional[float],  # Rayleigh's β of stretch and shear [s]
-        "bending_damping": Optional[float],  # Rayleigh's β of bending [s]
+        "yield_curvature": Optional[float],  # curvature of bent warp beyond which the sheet keeps a crease: released, it stays bent by what is above it [1/m]
+        "yield_hardening": Optional[float],  # stiffness beyond yield over that below
+        "yield_recovery": Optional[float],  # time in which creases fade to 37 % of themselves, as under an iron [s]
+        "stretch_limit": Optional[Union[float, "ANumberThatVaries"]],  # largest stretch in any direction, as length over rest length, unless the body has a `stretch_limit` of its own
+        "mass_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's α: slows all motion [1/s]
+        "stiffness_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's β of stretch and shear [s]
+        "bending_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's β of bending [s]
     },
     total=False,
 )
@@ -143,16 +236,24 @@ MaterialOfALattice = TypedDict(
     {
         "base": Optional[str],  # a material by name or path; the other keys change it
         "shear_modulus": Optional[float],  # shear modulus of the springs, only with `youngs_modulus` [N/m²]
-        "density": Optional[float],  # mass per volume [kg/m³]
-        "edge_modulus": Optional[float],  # modulus of springs along voxel edges; a spring's constant is modulus × voxel width [N/m²]
-        "face_diagonal_modulus": Optional[float],  # modulus of springs along face diagonals [N/m²]
-        "body_diagonal_modulus": Optional[float],  # modulus of springs along body diagonals [N/m²]
-        "volume_modulus": Optional[float],  # resistance of each voxel to a change of volume; 0 is off [N/m²]
-        "mass_damping": Optional[float],  # Rayleigh's α: slows all motion, like a viscous fluid [1/s]
-        "stiffness_damping": Optional[float],  # Rayleigh's β: damps stretching only [s]
+        "density": Optional[Union[float, "ANumberThatVaries"]],  # mass per volume [kg/m³]
+        "edge_modulus": Optional[Union[float, "ANumberThatVaries"]],  # modulus of springs along voxel edges; a spring's constant is modulus × voxel width [N/m²]
+        "face_diagonal_modulus": Optional[Union[float, "ANumberThatVaries"]],  # modulus of springs along face diagonals [N/m²]
+        "body_diagonal_modulus": Optional[Union[float, "ANumberThatVaries"]],  # modulus of springs along body diagonals [N/m²]
+        "volume_modulus": Optional[Union[float, "ANumberThatVaries"]],  # resistance of each voxel to a change of volume; 0 is off [N/m²]
+        "mass_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's α: slows all motion, like a viscous fluid [1/s]
+        "stiffness_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's β: damps stretching only [s]
         "law": Optional[Literal["springs", "neo_hookean"]],  # `neo_hookean`: a solid of tetrahedra in place of springs, with a stated E and ν
-        "youngs_modulus": Optional[float],  # Young's modulus of the solid; with springs, of a large block along its axes, in place of the three moduli [N/m²]
+        "youngs_modulus": Optional[Union[float, "ANumberThatVaries"]],  # Young's modulus of the solid; with springs, of a large block along its axes, in place of the three moduli [N/m²]
         "poisson": Optional[float],  # Poisson's ratio of the solid
+    },
+    total=False,
+)
+
+AnEffortOverTime = TypedDict(
+    "AnEffortOverTime",
+    {
+        "keyframes": Required[Sequence["KeyframesOfAnEffort"]],  # a list of tables; times ascend; before the first its effort holds
     },
     total=False,
 )
@@ -163,6 +264,25 @@ Probe = TypedDict(
         "name": Optional[str],  # name in `probes.csv`
         "body": Optional[str],  # must be given if there are several
         "at": Required[Vector],  # a point of the body or collider at the start, which moves with it [m]
+    },
+    total=False,
+)
+
+Attachment = TypedDict(
+    "Attachment",
+    {
+        "name": Optional[str],  # name in messages and in `attachments.csv`
+        "body": Optional[str],  # a body, or a collider with a density; must be given if there are several
+        "where": Optional["Where"],  # selection of its vertices; for a collider with a density those of its mesh
+        "to": Required[str],  # the body or collider that they are attached to
+        "where_to": Optional["Where"],  # selection of vertices of `to`: each vertex is attached to the nearest one
+        "at": Optional[Vector],  # a point of `to` at the start, in place of `where_to`: all are attached to this one [m]
+        "rest": Optional[Literal["joined", "distance", "cord"]],  # `"joined"`: the points are pulled together · `"distance"`: they keep the distance that they have when it begins · `"cord"`: they come no farther apart than that
+        "stiffness": Optional[float],  # of the whole attachment; each vertex has a share by its mass [N/m]
+        "damping": Optional[float],  # of the whole attachment, against relative motion of the points [N·s/m]
+        "break_force": Optional[float],  # of the whole attachment: a vertex whose force exceeds its share is free from then on [N]
+        "from": Optional[float],  # start time [s]
+        "until": Optional[float],  # release time, after `from` [s]
     },
     total=False,
 )
@@ -185,10 +305,10 @@ GravityForce = TypedDict(
     "GravityForce",
     {
         "name": Optional[str],  # name in messages
-        "type": Required[Literal["gravity"]],  # `"gravity"`, `"point"` or `"wind"`
+        "type": Required[Literal["gravity"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
         "body": Optional[str],  # the body it acts on
         "acceleration": Optional[Vector],  # acceleration of all bodies it acts on [m/s²]
-        "keyframes": Optional[Sequence["KeyframesOfGravity"]],  # the value over time in place of a constant: a list of tables, linear between them; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfGravity"]],  # the value over time in place of a constant: a list of tables; times ascend
         "from": Optional[float],  # time when it begins to act [s]
         "until": Optional[float],  # time when it ends, after `from` [s]
     },
@@ -199,11 +319,11 @@ PointForce = TypedDict(
     "PointForce",
     {
         "name": Optional[str],  # name in messages
-        "type": Required[Literal["point"]],  # `"gravity"`, `"point"` or `"wind"`
+        "type": Required[Literal["point"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
         "body": Optional[str],  # a body, or a collider with a density; must be given if there are several
         "where": Optional["Where"],  # selection of vertices; for a collider with a density those of its mesh, or, without `where`, its centre of mass
         "force": Optional[Vector],  # force on each selected vertex [N]
-        "keyframes": Optional[Sequence["KeyframesOfPoint"]],  # the value over time in place of a constant: a list of tables, linear between them; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfPoint"]],  # the value over time in place of a constant: a list of tables; times ascend
         "from": Optional[float],  # time when it begins to act [s]
         "until": Optional[float],  # time when it ends, after `from` [s]
     },
@@ -214,23 +334,170 @@ WindForce = TypedDict(
     "WindForce",
     {
         "name": Optional[str],  # name in messages
-        "type": Required[Literal["wind"]],  # `"gravity"`, `"point"` or `"wind"`
+        "type": Required[Literal["wind"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
         "body": Optional[str],  # the body it acts on
         "velocity": Optional[Vector],  # mean velocity of the air [m/s]
-        "keyframes": Optional[Sequence["KeyframesOfWind"]],  # the value over time in place of a constant: a list of tables, linear between them; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfWind"]],  # the value over time in place of a constant: a list of tables; times ascend
         "from": Optional[float],  # time when it begins to act [s]
         "until": Optional[float],  # time when it ends, after `from` [s]
-        "air_density": Optional[float],  # density of the air [kg/m³]
-        "drag": Optional[float],  # drag coefficient; 1.17 is a square plate, broadside
-        "lift": Optional[float],  # lift coefficient, at most `drag`
-        "gust": Optional[float],  # root mean square of each component of the turbulence [m/s]
+        "air_density": Optional[Union[float, "ANumberOverTime"]],  # density of the air [kg/m³]
+        "drag": Optional[Union[float, "ANumberOverTime"]],  # drag coefficient; 1.17 is a square plate, broadside
+        "lift": Optional[Union[float, "ANumberOverTime"]],  # lift coefficient, at most `drag`
+        "gust": Optional[Union[float, "ANumberOverTime"]],  # root mean square of each component of the turbulence [m/s]
         "gust_length": Optional[float],  # size of its largest eddies [m]
+        "seed": Optional[int],  # whole number that seeds the turbulence
+        "porosity": Optional[float],  # open share of the surface, through which air passes: drag and lift are those of the rest
+    },
+    total=False,
+)
+
+UniformForce = TypedDict(
+    "UniformForce",
+    {
+        "name": Optional[str],  # name in messages
+        "type": Required[Literal["uniform"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
+        "body": Optional[str],  # the body it acts on
+        "from": Optional[float],  # time when it begins to act [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
+        "acts_as": Required[Literal["wind", "acceleration"]],  # `"wind"`: a velocity that adds to the air of a wind and acts through its drag and lift; `"acceleration"`: it accelerates all mass
+        "wind": Optional[str],  # the name of the wind to which it adds
+        "strength": Required[Union[float, "ANumberOverTime"]],  # size of the vectors before falloff, constant or `{ keyframes = [{ time = …, value = … }, …] }` [m/s or m/s²]
+        "center": Optional[Vector],  # its centre: falloff counts from there, positions of the kind are relative to it [m]
+        "travel": Optional[Vector],  # velocity at which it moves, without its region: what it does at x and t is what it did at x − t `travel` and 0 [m/s]
+        "falloff": Optional["Falloff"],  # how it weakens with the distance from its centre, a vortex from its axis, a curve from the curve
+        "region": Optional["Region"],  # where it acts, a table; of several shapes where all of them overlap
+        "direction": Required[Vector],  # direction
+    },
+    total=False,
+)
+
+RadialForce = TypedDict(
+    "RadialForce",
+    {
+        "name": Optional[str],  # name in messages
+        "type": Required[Literal["radial"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
+        "body": Optional[str],  # the body it acts on
+        "from": Optional[float],  # time when it begins to act [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
+        "acts_as": Required[Literal["wind", "acceleration"]],  # `"wind"`: a velocity that adds to the air of a wind and acts through its drag and lift; `"acceleration"`: it accelerates all mass
+        "wind": Optional[str],  # the name of the wind to which it adds
+        "strength": Required[Union[float, "ANumberOverTime"]],  # size of the vectors before falloff, constant or `{ keyframes = [{ time = …, value = … }, …] }` [m/s or m/s²]
+        "center": Optional[Vector],  # its centre: falloff counts from there, positions of the kind are relative to it [m]
+        "travel": Optional[Vector],  # velocity at which it moves, without its region: what it does at x and t is what it did at x − t `travel` and 0 [m/s]
+        "falloff": Optional["Falloff"],  # how it weakens with the distance from its centre, a vortex from its axis, a curve from the curve
+        "region": Optional["Region"],  # where it acts, a table; of several shapes where all of them overlap
+    },
+    total=False,
+)
+
+VortexForce = TypedDict(
+    "VortexForce",
+    {
+        "name": Optional[str],  # name in messages
+        "type": Required[Literal["vortex"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
+        "body": Optional[str],  # the body it acts on
+        "from": Optional[float],  # time when it begins to act [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
+        "acts_as": Required[Literal["wind", "acceleration"]],  # `"wind"`: a velocity that adds to the air of a wind and acts through its drag and lift; `"acceleration"`: it accelerates all mass
+        "wind": Optional[str],  # the name of the wind to which it adds
+        "strength": Required[Union[float, "ANumberOverTime"]],  # size of the vectors before falloff, constant or `{ keyframes = [{ time = …, value = … }, …] }` [m/s or m/s²]
+        "center": Optional[Vector],  # its centre: falloff counts from there, positions of the kind are relative to it [m]
+        "travel": Optional[Vector],  # velocity at which it moves, without its region: what it does at x and t is what it did at x − t `travel` and 0 [m/s]
+        "falloff": Optional["Falloff"],  # how it weakens with the distance from its centre, a vortex from its axis, a curve from the curve
+        "region": Optional["Region"],  # where it acts, a table; of several shapes where all of them overlap
+        "axis": Optional[Vector],  # its axis, through the centre; it turns counterclockwise seen against it
+        "radius": Optional[float],  # distance from the axis at which the size is `strength`: inside it grows in proportion, outside it falls like 1/r, unless there is another `falloff` [m]
+    },
+    total=False,
+)
+
+TurbulenceForce = TypedDict(
+    "TurbulenceForce",
+    {
+        "name": Optional[str],  # name in messages
+        "type": Required[Literal["turbulence"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
+        "body": Optional[str],  # the body it acts on
+        "from": Optional[float],  # time when it begins to act [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
+        "acts_as": Required[Literal["wind", "acceleration"]],  # `"wind"`: a velocity that adds to the air of a wind and acts through its drag and lift; `"acceleration"`: it accelerates all mass
+        "wind": Optional[str],  # the name of the wind to which it adds
+        "strength": Required[Union[float, "ANumberOverTime"]],  # size of the vectors before falloff, constant or `{ keyframes = [{ time = …, value = … }, …] }` [m/s or m/s²]
+        "center": Optional[Vector],  # its centre: falloff counts from there, positions of the kind are relative to it [m]
+        "travel": Optional[Vector],  # velocity at which it moves, without its region: what it does at x and t is what it did at x − t `travel` and 0 [m/s]
+        "falloff": Optional["Falloff"],  # how it weakens with the distance from its centre, a vortex from its axis, a curve from the curve
+        "region": Optional["Region"],  # where it acts, a table; of several shapes where all of them overlap
+        "largest": Optional[float],  # size of the largest eddies [m]
+        "smallest": Optional[float],  # size of the smallest eddies [m]
+        "turnover": Optional[float],  # time in which the largest eddies turn over; smaller ones are faster [s]
         "seed": Optional[int],  # whole number that seeds the turbulence
     },
     total=False,
 )
 
-Force = Union[GravityForce, PointForce, WindForce]
+GridForce = TypedDict(
+    "GridForce",
+    {
+        "name": Optional[str],  # name in messages
+        "type": Required[Literal["grid"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
+        "body": Optional[str],  # the body it acts on
+        "from": Optional[float],  # time when it begins to act [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
+        "acts_as": Required[Literal["wind", "acceleration"]],  # `"wind"`: a velocity that adds to the air of a wind and acts through its drag and lift; `"acceleration"`: it accelerates all mass
+        "wind": Optional[str],  # the name of the wind to which it adds
+        "strength": Required[Union[float, "ANumberOverTime"]],  # size of the vectors before falloff, constant or `{ keyframes = [{ time = …, value = … }, …] }` [m/s or m/s²]
+        "center": Optional[Vector],  # its centre: falloff counts from there, positions of the kind are relative to it [m]
+        "travel": Optional[Vector],  # velocity at which it moves, without its region: what it does at x and t is what it did at x − t `travel` and 0 [m/s]
+        "falloff": Optional["Falloff"],  # how it weakens with the distance from its centre, a vortex from its axis, a curve from the curve
+        "region": Optional["Region"],  # where it acts, a table; of several shapes where all of them overlap
+        "file": Required[Path],  # a `.npy` file with an array of shape (nx, ny, nz, 3), floats or integers: the vectors at the nodes, linear between them, 0 outside
+        "origin": Optional[Vector],  # the first node, relative to the centre [m]
+        "spacing": Optional[Vector],  # distances of the nodes along x, y and z, above 0 [m]
+    },
+    total=False,
+)
+
+CurveForce = TypedDict(
+    "CurveForce",
+    {
+        "name": Optional[str],  # name in messages
+        "type": Required[Literal["curve"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
+        "body": Optional[str],  # the body it acts on
+        "from": Optional[float],  # time when it begins to act [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
+        "acts_as": Required[Literal["wind", "acceleration"]],  # `"wind"`: a velocity that adds to the air of a wind and acts through its drag and lift; `"acceleration"`: it accelerates all mass
+        "wind": Optional[str],  # the name of the wind to which it adds
+        "strength": Required[Union[float, "ANumberOverTime"]],  # size of the vectors before falloff, constant or `{ keyframes = [{ time = …, value = … }, …] }` [m/s or m/s²]
+        "center": Optional[Vector],  # its centre: falloff counts from there, positions of the kind are relative to it [m]
+        "travel": Optional[Vector],  # velocity at which it moves, without its region: what it does at x and t is what it did at x − t `travel` and 0 [m/s]
+        "falloff": Optional["Falloff"],  # how it weakens with the distance from its centre, a vortex from its axis, a curve from the curve
+        "region": Optional["Region"],  # where it acts, a table; of several shapes where all of them overlap
+        "points": Required[Points],  # the curve, at least two points `[[x, y, z], …]`: it acts along it, from the first to the last [m]
+        "attraction": Optional[float],  # further size towards the curve, as a share of `strength`
+        "reach": Optional[float],  # distance at which the attraction is full; inside it is proportional to the distance [m]
+    },
+    total=False,
+)
+
+DragForce = TypedDict(
+    "DragForce",
+    {
+        "name": Optional[str],  # name in messages
+        "type": Required[Literal["drag"]],  # `"gravity"`, `"point"`, `"wind"`, `"uniform"`, `"radial"`, `"vortex"`, `"turbulence"`, `"grid"`, `"curve"` or `"drag"`
+        "body": Optional[str],  # the body it acts on
+        "from": Optional[float],  # time when it begins to act [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
+        "strength": Optional[Union[float, "ANumberOverTime"]],  # factor of both coefficients, constant or `{ keyframes = [{ time = …, value = … }, …] }`
+        "center": Optional[Vector],  # its centre: falloff counts from there, positions of the kind are relative to it [m]
+        "travel": Optional[Vector],  # velocity at which it moves, without its region: what it does at x and t is what it did at x − t `travel` and 0 [m/s]
+        "falloff": Optional["Falloff"],  # how it weakens with the distance from its centre, a vortex from its axis, a curve from the curve
+        "region": Optional["Region"],  # where it acts, a table; of several shapes where all of them overlap
+        "linear": Optional[float],  # deceleration per speed [1/s]
+        "quadratic": Optional[float],  # deceleration per square of the speed [1/m]
+    },
+    total=False,
+)
+
+Force = Union[GravityForce, PointForce, WindForce, UniformForce, RadialForce, VortexForce, TurbulenceForce, GridForce, CurveForce, DragForce]
 
 Pin = TypedDict(
     "Pin",
@@ -240,9 +507,12 @@ Pin = TypedDict(
         "where": Optional["Where"],  # selection of vertices; a collider with a density is held as a whole, without `where`
         "from": Optional[float],  # start time; the vertices are held at their positions at that time [s]
         "until": Optional[float],  # release time, after `from` [s]
-        "pivot": Optional[Vector],  # point about which `rotate` turns [m]
+        "stiffness": Optional[float],  # of the whole pin, which is then soft: springs pull its vertices to their targets; each has a share by its mass [N/m]
+        "time": Optional[float],  # in place of `stiffness`: time in which a critically damped soft pin brings its body to the target [s]
+        "damping": Optional[float],  # of the whole pin, against motion relative to the target [N·s/m]
+        "pivot": Optional[Vector],  # point about which `rotate` turns and `scale` scales [m]
         "sequence": Optional[Path],  # motion, in place of `keyframes`: a file with the position of every vertex of the body's mesh per frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. Metres, y up, in the world
-        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion: a list of tables; linear between them, rotation at constant speed; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion: a list of tables; times ascend
     },
     total=False,
 )
@@ -264,7 +534,7 @@ PlaneCollider = TypedDict(
         "center": Optional[Vector],  # any point of the plane [m]
         "normal": Optional[Vector],  # points to the side where bodies are; they cannot reach the other side
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
-        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
@@ -283,7 +553,7 @@ SphereCollider = TypedDict(
         "velocity": Optional[Vector],  # velocity at the start; only with a density [m/s]
         "angular_velocity": Optional[Vector],  # rate of rotation at the start, along the axis through the centre of mass; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
-        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
@@ -302,7 +572,7 @@ CapsuleCollider = TypedDict(
         "velocity": Optional[Vector],  # velocity at the start; only with a density [m/s]
         "angular_velocity": Optional[Vector],  # rate of rotation at the start, along the axis through the centre of mass; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
-        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
@@ -322,7 +592,7 @@ BoxCollider = TypedDict(
         "velocity": Optional[Vector],  # velocity at the start; only with a density [m/s]
         "angular_velocity": Optional[Vector],  # rate of rotation at the start, along the axis through the centre of mass; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
-        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
@@ -346,7 +616,7 @@ MeshCollider = TypedDict(
         "velocity": Optional[Vector],  # velocity at the start; only with a density [m/s]
         "angular_velocity": Optional[Vector],  # rate of rotation at the start, along the axis through the centre of mass; only with a density [degrees/s]
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
-        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; linear between them, rotation at constant speed; times ascend
+        "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
@@ -390,6 +660,8 @@ ShellBody = TypedDict(
         "model": Required[Literal["shell"]],  # `"lattice"`: voxels with springs, filled into the mesh · `"shell"`: the mesh itself as [thin cloth](shells.md)
         "thickness": Optional[float],  # thickness in contact [m]
         "rest_mesh": Optional[Path],  # a mesh with the same polygons in the stress-free shape; `scale` applies to it
+        "rest_scale_warp": Optional[float],  # stress-free length along warp over that of the mesh: below 1 the cloth shrinks
+        "rest_scale_weft": Optional[float],  # stress-free length along weft over that of the mesh
         "warp": Optional[Vector],  # direction of the warp threads in the mesh as modelled
         "compression": Optional[Literal["buckling", "elastic"]],  # how threads resist compression: `buckling`, up to the load at which cells of the mesh fold; `elastic`, as they resist tension
         "stretch_limit": Optional[float],  # largest stretch of a triangle in any direction, as length over rest length; 1.05 allows 5 %
@@ -412,7 +684,7 @@ Solver = TypedDict(
     "Solver",
     {
         "integrator": Optional[Literal["implicit_euler", "bdf2", "linearly_implicit_euler", "symplectic_euler"]],  # `"implicit_euler"`: first order, always stable, damps · `"bdf2"`: second order, always stable, damps little · `"linearly_implicit_euler"`: one Newton step · `"symplectic_euler"`: explicit, only stable for small steps
-        "effort": Optional[Literal["draft", "normal", "exact"]],  # how accurately steps are solved: `"draft"`, to see whether a scene works · `"normal"`, for pictures · `"exact"`, for measurements
+        "effort": Optional[Union[Literal["draft", "normal", "exact"], "AnEffortOverTime"]],  # how accurately steps are solved: `"draft"`, to see whether a scene works · `"normal"`, for pictures · `"exact"`, for measurements; or, over time, `{ keyframes = [{ time = …, value = … }, …] }`
         "tolerance": Optional[float],  # a step has converged when its estimated error, as displacement, is at most this share of the displacement that the present accelerations cause in a step
         "linear_tolerance": Optional[float],  # relative residual of the linear solve of `linearly_implicit_euler`
     },
@@ -441,6 +713,7 @@ Scene = TypedDict(
         "pin": Optional[Sequence["Pin"]],  # prescribed vertices
         "force": Optional[Sequence["Force"]],  # gravity, point forces, wind; without a gravity force there is no gravity
         "pressure": Optional[Sequence["Pressure"]],  # pressures inside shells
+        "attachment": Optional[Sequence["Attachment"]],  # vertices held to points of other bodies
         "probe": Optional[Sequence["Probe"]],  # points whose path is written to `probes.csv`
     },
     total=False,

@@ -77,7 +77,7 @@ const Table& variation_table() {
              .required_without({"keyframes"})
              .excludes("keyframes", "a number varies by a map or in time, not both")
              .shown_if<Variation>(has_map)
-             .means("where it varies: an attribute or group of the mesh, or a file of numbers or a picture"),
+             .means("where it varies: an attribute or group of the mesh, or a file of numbers"),
          number("from", &Variation::from)
              .required_without({"keyframes"})
              .needs("map", "name the map")
