@@ -94,7 +94,7 @@ WhereSphere = TypedDict(
 ANumberThatVaries = TypedDict(
     "ANumberThatVaries",
     {
-        "map": Optional[str],  # where it varies: an attribute or group of the mesh, or a file of numbers or a picture
+        "map": Optional[str],  # where it varies: an attribute or group of the mesh, or a file of numbers
         "from": Optional[float],  # the number where the map has its `lowest` value
         "to": Optional[float],  # the number where the map has its `highest` value
         "lowest": Optional[float],  # value of the map that stands for `from`

@@ -25,7 +25,7 @@ const Window whole_run{0, std::numeric_limits<double>::infinity()};
 
 Field field_of(std::shared_ptr<const FieldPattern> pattern, double strength) {
   Field field;
-  field.extent.strength = KeyedNumber{{{0, strength}}};
+  field.extent.strength = strength;
   field.extent.window = whole_run;
   field.pattern = std::move(pattern);
   return field;
@@ -240,7 +240,7 @@ TEST(FieldForce, UniformIsGravity) {
 
 TEST(FieldForce, FollowsItsKeysItsWindowAndItsMasses) {
   Field field = field_of(std::make_shared<UniformPattern>(Vec3::UnitX()), 0);
-  field.extent.strength = KeyedNumber{{{0, 0}, {1, 8}}};
+  field.extent.strength.keys = {{0, 0}, {1, 8}};
   field.extent.window = {0.25, 2};
   const std::vector<Vec3> x(2, Vec3::Zero());
   const FieldForce force({2, 0}, field);
@@ -305,7 +305,7 @@ TEST(DragField, ActsByRegionFalloffAndStrengthAndNeverReversesAMotion) {
   FieldExtent extent = everywhere();
   extent.region.emplace().sphere = Region::SphereShape{Vec3(1, 0, 0), 2};
   extent.falloff = {1, 0, 1, std::nullopt};
-  extent.strength = KeyedNumber{{{0, 4}}};
+  extent.strength = 4;
   const std::vector<Vec3> x = {Vec3(0, 1, 0), Vec3(-1.5, 0, 0)}, v(2, Vec3(0, 2, 0));
   const DragField drag({1, 1}, extent, {3, 0.5});
   const auto potential = drag.potential(step_of(x, v, 0, 0.01));

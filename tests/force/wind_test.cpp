@@ -358,10 +358,10 @@ TEST(Gusts, TravelUnchangedInAFrozenField) {
 TEST(Wind, FieldsAddToItsAir) {
   Field breeze;
   breeze.extent.window = always;
-  breeze.extent.strength = KeyedNumber{{{0, 3}}};
+  breeze.extent.strength = 3;
   breeze.pattern = std::make_shared<UniformPattern>(Vec3::UnitX());
   Field counter = breeze;
-  counter.extent.strength = KeyedNumber{{{0, -1}}};
+  counter.extent.strength = -1;
   WindSettings settings = blowing(Vec3(0, 7, 0));
   settings.lift = 0.5;
   settings.fields = {breeze, counter};
