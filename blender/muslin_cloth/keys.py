@@ -34,6 +34,12 @@ def limits(table, name, **chosen):
     return found
 
 
+def words(table, name, **chosen):
+    """The words that the value of the key may be."""
+    allowed = key(table, name, **chosen)
+    return next((form for form in allowed.get("anyOf", ()) if "enum" in form), allowed)["enum"]
+
+
 def _plain(text):
     """Without Markdown."""
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", text).replace("`", "").strip()

@@ -92,7 +92,7 @@ class MuslinScene(bpy.types.PropertyGroup):
         name="Effort", default=keys.default("solver", "effort").upper(),
         description="How accurately steps are solved; surfaces do not cross at any effort",
         items=[(word.upper(), word.capitalize(), keys.meaning("solver", "effort", word))
-               for word in keys.key("solver", "effort")["enum"]])
+               for word in keys.words("solver", "effort")])
     friction: FloatProperty(
         name="Friction", default=keys.default("contact", "friction"), soft_max=1,
         **keys.limits("contact", "friction"), description=keys.sentence("contact", "friction"))
