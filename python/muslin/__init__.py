@@ -13,6 +13,7 @@ its memory: read-only, and valid for as long as they are kept. Errors are muslin
 
 from muslin import scene_types
 from muslin._muslin import (
+    AttachmentForce,
     Body,
     Contour,
     Diagnostics,
@@ -26,6 +27,7 @@ from muslin._muslin import (
     MeshReport,
     Model,
     Pin,
+    PinForce,
     Run,
     RunPictures,
     RunProgress,
@@ -72,6 +74,7 @@ from muslin.tables import make_scene, to_toml
 __version__ = version()
 
 __all__ = [
+    "AttachmentForce",
     "Body",
     "Contour",
     "Diagnostics",
@@ -89,6 +92,7 @@ __all__ = [
     "MeshReport",
     "Model",
     "Pin",
+    "PinForce",
     "Run",
     "RunPictures",
     "RunProgress",

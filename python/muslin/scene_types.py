@@ -684,7 +684,7 @@ Solver = TypedDict(
     "Solver",
     {
         "integrator": Optional[Literal["implicit_euler", "bdf2", "linearly_implicit_euler", "symplectic_euler"]],  # `"implicit_euler"`: first order, always stable, damps · `"bdf2"`: second order, always stable, damps little · `"linearly_implicit_euler"`: one Newton step · `"symplectic_euler"`: explicit, only stable for small steps
-        "effort": Optional[Union[Literal["draft", "normal", "exact"], "AnEffortOverTime"]],  # how accurately steps are solved: `"draft"`, to see whether a scene works · `"normal"`, for pictures · `"exact"`, for measurements; or, over time, `{ keyframes = [{ time = …, value = … }, …] }`
+        "effort": Optional[Union[Literal["draft", "normal", "exact"], "AnEffortOverTime"]],  # how accurately steps are solved, one word or `{ keyframes = [{ time = …, value = … }, …] }`: `"draft"`, to see whether a scene works · `"normal"`, for pictures · `"exact"`, for measurements
         "tolerance": Optional[float],  # a step has converged when its estimated error, as displacement, is at most this share of the displacement that the present accelerations cause in a step
         "linear_tolerance": Optional[float],  # relative residual of the linear solve of `linearly_implicit_euler`
     },
