@@ -39,17 +39,20 @@ class ShellTerms {
                                               stress_.shear.greatest_slope(), m.poisson}),
                  3, m.stiffness_damping);
     } else {
-      bound_.add(*membrane_on(nullptr, even), 3, greatest("stiffness_damping", m.stiffness_damping));
+      bound_.add(*membrane_on(nullptr, even), 3, greatest(&ShellMaterial::stiffness_damping));
     }
     // The limit has no stiffness at rest, so that the stable step does not know it.
     if (body_.own().stretch_limit) add("stretch limit", limit_on(pattern));
     const auto bending = bending_on(pattern, held, even);
     add_bending(bending, held);
-    bound_.add(*bending, 2 * 4, greatest("bending_damping", m.bending_damping));  // blocks of half the stiffness that bounds it
+    // Its blocks are those of half the stiffness that bounds it.
+    bound_.add(*bending, 2 * 4, greatest(&ShellMaterial::bending_damping));
     if (has_bending_friction(m)) add_bending_friction(*bending, held);
     add_dampings(pattern, held, membrane, bending);
     const std::vector<double> masses = body_.masses();
-    bound_.apply(masses, greatest("mass_damping", m.mass_damping), body_.statistics);
+    const MappedNumber* map = find_map(body_.maps, "mass_damping");
+    const double slowing = map != nullptr ? std::max(map->variation.from, map->variation.to) : m.mass_damping;
+    bound_.apply(masses, slowing, body_.statistics);
   }
 
  private:
@@ -159,10 +162,11 @@ class ShellTerms {
       for (std::size_t v = 0; v < masses.size(); ++v) masses[v] *= map->at(v) / m.mass_damping;
     add_damping("mass damping", std::make_shared<MassDamping>(m.mass_damping, std::move(masses)));
   }
-  /// The greatest value of a number that may vary by a map.
-  double greatest(std::string_view key, double number) const {
-    const MappedNumber* map = find_map(body_.maps, key);
-    return map != nullptr ? std::max(map->variation.from, map->variation.to) : number;
+  /// The greatest value of a number that may vary by a map, or follow one that does.
+  double greatest(double ShellMaterial::* number) const {
+    double most = 0;
+    for (const ShellMaterial& at : materials()) most = std::max(most, at.*number);
+    return most;
   }
   void add_bending_friction(const ShellBending& bending, std::span<const std::uint8_t> held) {
     const ShellMaterial& m = material_;
