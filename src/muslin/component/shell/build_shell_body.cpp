@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -113,11 +114,14 @@ class ShellBuilder {
     if (has_curves(material) || has_bending_curves(material))
       throw Error(ErrorKind::input, place, "maps and measured curves are in one material",
                   "give moduli in place of the curves");
-    for (const MappedNumber& map : body_.maps)
-      if (material.yield_curvature && (map.variation.key.starts_with("bending_") || map.variation.key == "poisson"))
+    for (const MappedNumber& map : body_.maps) {
+      const std::string& key = map.variation.key;
+      const bool bends = key == "bending_warp" || key == "bending_weft" || key == "bending_bias";
+      if (material.yield_curvature && bends)
         throw Error(ErrorKind::input, map.variation.place,
-                    fmt::format("`{}` varies by a map in a material with `yield_curvature`", map.variation.key),
+                    fmt::format("`{}` varies by a map in a material with `yield_curvature`", key),
                     "give a sheet that creases one number for its bending");
+    }
     body_.triangle_materials = body_.materials_of_triangles(0);
     for (std::size_t t = 0; t < body_.triangle_materials.size(); ++t) {
       shell_material_table().check(body_.triangle_materials[t],
