@@ -60,7 +60,8 @@ const schema::Table& keys() {
              .means("whole number that seeds the turbulence"),
          schema::number("porosity", &Own::porosity)
              .range({0, 1, false})
-             .means("open share of the surface, through which air passes: drag and lift are those of the rest")},
+             .means("open share of the surface, through which air passes: drag and lift are those of the "
+                    "rest")},
         check_lift);
     return wind;
   }();

@@ -12,8 +12,6 @@
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/description.hpp"
 #include "muslin/component/shell/trusted_edge.hpp"
-#include "muslin/material/keyed_material.hpp"
-#include "muslin/material/varied_material.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/error.hpp"
@@ -21,7 +19,9 @@
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/io/vtk_file.hpp"
+#include "muslin/material/keyed_material.hpp"
 #include "muslin/material/measured_sheet.hpp"
+#include "muslin/material/varied_material.hpp"
 
 namespace muslin {
 namespace {
