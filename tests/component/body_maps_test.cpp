@@ -189,6 +189,10 @@ TEST_F(Maps, ThatAreWrongAreErrorsAtTheirPlace) {
               HasSubstr("is 0.55 at vertex 11, counted from 0, which is not between 0 and 0.5"));
   EXPECT_THAT(complaint("bending_bias = { map = 'ramp.csv', from = 1e-7, to = 2e-5 }"),
               HasSubstr("at polygon 1: with"));
+  EXPECT_THAT(
+      complaint("bending_weft = { map = 'ramp.csv', from = 1e-5, to = 1e-4 }, bending_bias = { keyframes "
+                "= [{ time = 0, value = 5e-5 }, { time = 1, value = 2e-5 }] }"),
+      HasSubstr(" and 0.6875 s: with"));
   EXPECT_THAT(complaint("weft_curve = [[0.1, 2]], mass_damping = { map = 'ramp.csv', from = 1, to = 2 }"),
               HasSubstr("maps and measured curves are in one material"));
 }

@@ -12,6 +12,7 @@
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/component/shell/trusted_edge.hpp"
 #include "muslin/core/counted.hpp"
+#include "muslin/material/keyed_material.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/shell/inverted_triangles.hpp"
 #include "muslin/shell/rest_scale.hpp"
@@ -123,11 +124,19 @@ class ShellBuilder {
                     "give a sheet that creases one number for its bending");
     }
     body_.triangle_materials = body_.materials_of_triangles(0);
-    for (std::size_t t = 0; t < body_.triangle_materials.size(); ++t) {
-      shell_material_table().check(body_.triangle_materials[t],
-                                   schema::Subject(fmt::format("the material of body `{}` at polygon {}",
-                                                               settings_.name, body_.shell.faces[t] + 1),
-                                                   place));
+    check_triangles(body_.triangle_materials, "", place);
+    for (const double time : times_to_check(material.variations))
+      check_triangles(body_.materials_of_triangles(time), fmt::format(" and {:.4g} s", time), place);
+  }
+
+  /// `when` is for messages.
+  void check_triangles(const std::vector<ShellMaterial>& materials, const std::string& when,
+                       const Place& place) const {
+    for (std::size_t t = 0; t < materials.size(); ++t) {
+      shell_material_table().check(
+          materials[t], schema::Subject(fmt::format("the material of body `{}` at polygon {}{}",
+                                                    settings_.name, body_.shell.faces[t] + 1, when),
+                                        place));
     }
   }
 
