@@ -28,7 +28,8 @@ Vec3 PinTargets::anchor(std::size_t i, const Vec3& position) const {
 }
 
 Vec3 PinTargets::first_anchor(const Pin& pin, double time, std::size_t i, const Vec3& position) {
-  return pin.sequence ? Vec3(position - point_of_sequence(pin, time, i)) : position;
+  if (!pin.sequence && time <= std::max(pin.from, 0.0)) return position;
+  return PinTargets(pin, time).anchor(i, position);
 }
 
 }  // namespace muslin

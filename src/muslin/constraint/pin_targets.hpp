@@ -20,7 +20,8 @@ class PinTargets {
   /// Returns the anchor with which vertex i has its target at `position`.
   Vec3 anchor(std::size_t i, const Vec3& position) const;
 
-  /// Returns the anchor of vertex i, which is at `position`, of a pin that begins in a step from `time`.
+  /// Returns the anchor of vertex i, which is at `position`, of a pin that takes hold in a step from `time`.
+  /// If it began earlier and its anchors are lost, as by a cut, the target goes on from `position`.
   static Vec3 first_anchor(const Pin& pin, double time, std::size_t i, const Vec3& position);
 
  private:
