@@ -124,6 +124,7 @@ std::string solver_text(const SolverSettings& solver) {
   for (std::size_t k = 1; k < solver.effort_keys.size(); ++k)
     effort += fmt::format(", {} from {:.4g} s", name_of(effort_names(), solver.effort_keys[k].value),
                           solver.effort_keys[k].time);
+  if (!solver.tolerance && !solver.effort_keys.empty()) return fmt::format("{}, effort {}", name, effort);
   return fmt::format("{}, effort {}, tolerance {:.3g}", name, effort, solver.error_tolerance());
 }
 
