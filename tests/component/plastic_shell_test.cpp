@@ -159,6 +159,8 @@ TEST(PlasticShell, WrongNumbersAreErrors) {
   EXPECT_THAT(message(paper + ", yield_hardening = 2"),
               testing::HasSubstr("is 2; give a number from 0 to 1"));
   EXPECT_THAT(message(paper + ", yield_recovery = 0"), testing::HasSubstr("yield_recovery"));
+  EXPECT_THAT(message("bending_warp = 1e-4, yield_hardening = 0.5"),
+              testing::HasSubstr("a sheet without `yield_curvature` does not crease"));
   EXPECT_THAT(message("bending_warp = 0, yield_curvature = 10"), testing::HasSubstr("give `bending_warp`"));
   EXPECT_THAT(message("bending_warp_curve = [[10, 1e-3]], yield_curvature = 10"),
               testing::HasSubstr("in place of the curves"));

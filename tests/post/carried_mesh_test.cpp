@@ -123,6 +123,9 @@ TEST(CarriedMesh, RefusesAMeshInAnotherPlace) {
     EXPECT_THAT(error.remedy(), testing::HasSubstr("same place"));
   }
   EXPECT_THROW(CarriedMesh({}, coarse), Error);
+  Mesh small = coarse;
+  for (Vec3& x : small.positions) x *= 1e-3;
+  EXPECT_THROW(CarriedMesh(coarse, small), Error);
 }
 
 }  // namespace

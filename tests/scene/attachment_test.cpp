@@ -198,6 +198,16 @@ TEST(AttachmentRun, BreaksAtTheStatedForceAndItsEnergyIsLost) {
   EXPECT_LT(centre_of(simulation, "ball").y(), 0.1);  // it has fallen
 }
 
+TEST(AttachmentRun, SpringThatBeginsStretchedIsWorkButNotOfTheMaterial) {
+  const std::string joint = ball + post +
+                            "[[attachment]]\nbody = 'ball'\nwhere = { nearest = [0, 0.35, 0] }\nto = "
+                            "'post'\nstiffness = 10\nfrom = 0.02\n";
+  const Diagnostics now = after(model_of(joint), 2).diagnostics();
+  EXPECT_NEAR(now.work, 0.5 * 10 * 0.2 * 0.2, 0.02);  // over 0.2 m, before anything else moves
+  EXPECT_EQ(now.material_work, 0);
+  EXPECT_GT(now.elastic, 0);
+}
+
 TEST(AttachmentRun, GapThatBreaksJointsAtOnceIsAWarning) {
   const std::string joint = ball + post +
                             "[[attachment]]\nbody = 'ball'\nwhere = { nearest = [0, 0.35, 0] }\nto = "

@@ -183,5 +183,13 @@ TEST(SoftPinRun, WrongKeysAreErrors) {
               HasSubstr("colliders keep their size"));
 }
 
+TEST(SoftPinRun, OneThatIsStifferThanTheClothIsAWarningBelowEffortExact) {
+  const std::string pin = "[[pin]]\nname = 'row'\n" + row + "stiffness = ";
+  EXPECT_TRUE(sheet(pin + "1e3\n", "", 2, {"solver.effort='normal'"})->warnings.empty());
+  EXPECT_THAT(sheet(pin + "1e7\n", "", 2, {"solver.effort='normal'"})->warnings.front(),
+              HasSubstr("pin row: it is"));
+  EXPECT_TRUE(sheet(pin + "1e7\n")->warnings.empty());
+}
+
 }  // namespace
 }  // namespace muslin

@@ -49,6 +49,7 @@ class MapReader {
     for (const MeshGroup& group : component_.mesh.groups)
       if (group.name == variation_.map) return from_group(group);
     std::vector<std::string> names;
+    names.reserve(attributes_.size() + component_.mesh.groups.size());
     for (const VertexAttribute& attribute : attributes_) names.push_back(attribute.name);
     for (const MeshGroup& group : component_.mesh.groups) names.push_back(group.name);
     refuse(fmt::format("is no attribute or group of the mesh of body `{}`", component_.name),

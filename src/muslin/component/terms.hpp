@@ -11,6 +11,7 @@ namespace muslin {
 /// Role of a potential in the energy balance.
 enum class EnergyRole {
   elastic,      ///< stored in the material
+  joint,        ///< stored in springs between bodies
   potential,    ///< stored in a fixed field (gravity)
   work,         ///< done on the bodies from outside (point forces, wind)
   support,      ///< likewise, by what holds a body; its force answers to others and starts no motion

@@ -110,6 +110,7 @@ std::unique_ptr<Potential> SoftPin::potential(const StepContext& step) const {
                                               ? step.history->find(array_, numbers_of_vertex * count)
                                               : std::span<const double>();
   std::vector<Vec3> anchors;
+  anchors.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     anchors.push_back(numbers.empty() ? PinTargets::first_anchor(
                                             *pin_, step.time_begin, i,

@@ -138,7 +138,13 @@ void check_curves(const ShellMaterial& m, const schema::Subject& subject) {
 }
 
 void check_yield(const ShellMaterial& m, const schema::Subject& subject) {
-  if (!m.yield_curvature) return;
+  if (!m.yield_curvature) {
+    if (m.yield_hardening != 0 || m.yield_recovery)
+      throw subject.error(m.yield_recovery ? "yield_recovery" : "yield_hardening",
+                          "a sheet without `yield_curvature` does not crease",
+                          "add the curvature from which on it creases");
+    return;
+  }
   if (has_bending_curves(m))
     throw subject.error("yield_curvature", "a sheet with a curve of bending cannot crease",
                         "give `bending_warp` and `bending_weft` in place of the curves");

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t grain = 1024;
 constexpr int most_halvings = 10;
+constexpr double least_size = 0.02;  // of a carried mesh, as a share of the surface: millimetres are none
 /// A triangulated curved surface comes nearer to a point than its foot by some hundredths of the distance.
 constexpr double tangency = 0.9;
 
@@ -141,6 +142,12 @@ CarriedMesh::CarriedMesh(const Mesh& coarse, const Mesh& fine)
                 fmt::format("vertex {} of the carried mesh is {:.3g} m from the surface that carries it",
                             farthest - distances.begin(), *farthest),
                 "model both in the same place and unit of length");
+
+  if (fine.bounds().diagonal().norm() < least_size * size)
+    throw Error(ErrorKind::usage,
+                fmt::format("the carried mesh is {:.3g} m large, on a surface of {:.3g} m",
+                            fine.bounds().diagonal().norm(), size),
+                "give both in the same unit of length");
 
   std::vector<std::vector<int>> neighbours(fine.vertex_count());
   for_each_edge(triangle_sides(triangles_), [&](std::span<const EdgeUse> edge) {

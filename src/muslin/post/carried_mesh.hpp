@@ -35,7 +35,8 @@ struct Carried {
 class CarriedMesh {
  public:
   /// `fine` lies where it is modelled on `coarse`, both at rest. Errors: usage, for a surface without area,
-  /// or if a vertex of `fine` is further from it than half the surface's size.
+  /// if a vertex of `fine` is further from it than half the surface's size, or
+  /// if `fine` is a fiftieth of its size or less.
   CarriedMesh(const Mesh& coarse, const Mesh& fine);
   /// Returns the points for these positions of the coarse surface. Obstacles have the same triangles in
   /// every call.

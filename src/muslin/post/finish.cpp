@@ -33,7 +33,7 @@ Finish::Finish(const Mesh& rest, FinishOptions options) : stages_(std::make_uniq
   s.options = std::move(options);
   s.sheet = rest;
   if (s.options.smooth > 0) {
-    s.smoothing.emplace(rest, rest.vertex_count(), s.options.smooth);
+    s.smoothing.emplace(rest, s.options.smooth);
     s.sheet.positions = s.smoothing->points(rest.positions);
   }
   if (s.options.subdivide > 0) {

@@ -116,11 +116,12 @@ class AttachmentBuilder {
     }
     if (!(mass > 0)) fail(fmt::format("body `{}` has no mass there", body_.name), "attach another body");
     share(mass);
+    warn_of_stiffness();
     warn_of_breaking();
     const AttachmentRules rules{static_cast<AttachmentRules::Rest>(settings_.rest), settings_.from,
                                 settings_.until};
     const auto springs = std::make_shared<const Attachment>(settings_.name, rules, joints_);
-    model_.loads.push_back({settings_.name, EnergyRole::elastic, springs});
+    model_.loads.push_back({settings_.name, EnergyRole::joint, springs});
     if (settings_.damping > 0)
       model_.loads.push_back({settings_.name + ": damping", EnergyRole::dissipation,
                               std::make_shared<AttachmentDamping>(springs)});
@@ -233,6 +234,23 @@ class AttachmentBuilder {
       joints_->strength.push_back(settings_.break_force ? *settings_.break_force * share
                                                         : std::numeric_limits<double>::infinity());
     }
+  }
+
+  /// Steps do not resolve the forces of joints that are stiffer than the bodies around them.
+  void warn_of_stiffness() {
+    if (model_.scene.solver.effort_at(0) == Effort::exact) return;
+    constexpr double bound = 4 / soft_share;  // of the stiffness of a vertex, over that of a stiff joint
+    double worst = 0;
+    for (std::size_t j = 0; j < masses_.size(); ++j) {
+      const double resisted = joints_->stiffness[j] + joints_->damping[j] * model_.scene.time.frame_rate;
+      if (std::isfinite(stiffness_[j])) worst = std::max(worst, resisted / (bound * stiffness_[j]));
+    }
+    if (worst > 1)
+      model_.warnings.push_back(fmt::format(
+          "{}: it is {:.2g} times as stiff as the bodies it joins, so that its force is only accurate at "
+          "effort "
+          "exact; lower `stiffness` and `damping`, or leave them out for joints as stiff as the bodies",
+          what_, worst));
   }
 
   /// Points that are joined start with a gap if the meshes do.

@@ -159,6 +159,7 @@ Model build_model(const Scene& scene, const Progress& progress) {
   build_probes(model);
   build_contact(model);
   warn_of_explicit_steps(model);
+  warn_of_stiff_pins(model);
   return model;
 }
 

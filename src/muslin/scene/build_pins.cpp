@@ -1,5 +1,7 @@
 #include "muslin/scene/build_pins.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -66,6 +68,26 @@ void build_pins(Model& model) {
       model.loads.push_back({pin.name, EnergyRole::support, std::make_shared<SoftPin>(pin)});
     }
     model.pins.push_back(std::move(pin));
+  }
+}
+
+void warn_of_stiff_pins(Model& model) {
+  if (model.scene.solver.effort_at(0) == Effort::exact) return;
+  const double rate = model.scene.time.frame_rate;  // of the longest steps [1/s]
+  for (const Pin& pin : model.pins) {
+    double worst = 0;
+    for (std::size_t k = 0; pin.is_soft() && k < pin.vertices.size(); ++k) {
+      const auto v = static_cast<std::size_t>(pin.vertices[k]);
+      const double step = model.body_of(v).statistics.undamped_step;
+      const double stiffest = 4 * model.masses[v] / (step * step);  // bounds the material at the vertex
+      if (std::isfinite(step)) worst = std::max(worst, (pin.stiffness[k] + pin.damping[k] * rate) / stiffest);
+    }
+    if (worst > 1)
+      model.warnings.push_back(fmt::format(
+          "pin {}: it is {:.2g} times as stiff as the material it holds, so that its force is only accurate "
+          "at "
+          "effort exact; lower `stiffness` and `damping`, lengthen `time`, or leave them out for a hard pin",
+          pin.name, worst));
   }
 }
 

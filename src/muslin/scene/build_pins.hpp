@@ -10,4 +10,8 @@ namespace muslin {
 void build_pins(Model& model);
 void build_probes(Model& model);
 
+/// Warns of soft pins that are stiffer than the material they hold, whose forces steps do not resolve. The
+/// terms of the components exist.
+void warn_of_stiff_pins(Model& model);
+
 }  // namespace muslin

@@ -19,7 +19,7 @@ struct FieldForceSettings {
   // Of all kinds.
   ActsAs acts_as = ActsAs::acceleration;  ///< drag always slows
   std::string wind;                       ///< the name of the wind to which it adds; empty: the only one
-  KeyedNumber strength = 1;         ///< [m/s] or [m/s²]; of a drag a factor
+  KeyedNumber strength = 1;               ///< [m/s] or [m/s²]; of a drag a factor
   Vec3 center = Vec3::Zero();             ///< [m]
   Vec3 travel = Vec3::Zero();             ///< [m/s]
   std::optional<Falloff> falloff;         ///< none: 1 everywhere; of a vortex Rankine's

@@ -100,11 +100,12 @@ const schema::Table& effort_over_time_table() {
 
 /// A word, or `{ keyframes = [{ time, value }, …] }`.
 Key effort_key() {
-  Key key = schema::word("effort", &SolverSettings::effort, effort_names())
-                .means(
-                    "how accurately steps are solved, one word or `{ keyframes = [{ time = …, value = … }, …] }`: "
-                    "`\"draft\"`, to see whether a scene works · `\"normal\"`, for pictures · `\"exact\"`, for "
-                    "measurements");
+  Key key =
+      schema::word("effort", &SolverSettings::effort, effort_names())
+          .means(
+              "how accurately steps are solved, one word or `{ keyframes = [{ time = …, value = … }, …] }`: "
+              "`\"draft\"`, to see whether a scene works · `\"normal\"`, for pictures · `\"exact\"`, for "
+              "measurements");
   key.types.push_back(Type::table);
   key.table = effort_over_time_table;
   key.read = [word = key.read](const Key& k, const TomlTable& table, void* s) {

@@ -20,7 +20,7 @@
 namespace muslin {
 
 inline bool is_stored(EnergyRole role) {
-  return role == EnergyRole::elastic || role == EnergyRole::potential;
+  return role == EnergyRole::elastic || role == EnergyRole::joint || role == EnergyRole::potential;
 }
 
 /// True if a load of this role sets bodies in motion.

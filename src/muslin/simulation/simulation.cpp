@@ -132,7 +132,8 @@ void Simulation::Impl::advance() {
 void Simulation::Impl::describe_state(Diagnostics& row) const {
   const EnergyLedger& energy = state.energy;
   row.kinetic = kinetic_energy(model->masses, state.motion.velocities);
-  row.elastic = energy.sum(terms(), EnergyRole::elastic) + energy.contact_energy;
+  row.elastic = energy.sum(terms(), EnergyRole::elastic) + energy.sum(terms(), EnergyRole::joint) +
+                energy.contact_energy;
   row.potential = energy.sum(terms(), EnergyRole::potential);
   row.work = energy.work;
   row.material_work = energy.material_work;

@@ -25,7 +25,7 @@ class ShellBody final : public Component {
   BodySettings settings;  ///< with numbers of a shell in `material`
   Shell shell;
   std::shared_ptr<const SymmetricPattern> pattern;  ///< of the pairs of vertices that terms couple
-  std::vector<ShellMaterial> triangle_materials;  ///< #T where maps vary the material; empty: one for all
+  std::vector<ShellMaterial> triangle_materials;    ///< #T where maps vary the material; empty: one for all
 
   std::string kind() const override { return "shell"; }
   void add_terms(std::span<const std::uint8_t> held) override;
