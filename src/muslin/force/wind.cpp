@@ -206,6 +206,7 @@ std::unique_ptr<Potential> Wind::potential(const StepContext& step) const {
   const double lift = std::min(s.lift.at(time), drag);
   const double turned = s.gust.integral(time) / s.gust_length;  // eddy turnover times
   std::vector<double> strengths;
+  strengths.reserve(s.fields.size());
   for (const Field& field : s.fields)
     strengths.push_back(field.extent.strength_in(step.time_begin, step.time_end));
 
