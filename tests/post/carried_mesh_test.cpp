@@ -105,7 +105,7 @@ TEST(CarriedMesh, DoesNotCrossAnObstacle) {
   EXPECT_EQ(carried.crossings, 0U);
   EXPECT_GT(carried.drawn_in, 0U);
   EXPECT_LT(carried.drawn_in, fine.vertex_count() / 2);
-  // What cannot be helped is counted.
+  // A ball that goes through the sheet itself stays crossed, and its crossings are counted.
   const Mesh through = shapes::sphere(0.2, 2, Vec3(0.5, 0.5, 0));
   EXPECT_GT(CarriedMesh(coarse, fine)
                 .points(coarse.positions, {through.positions, triangulate(through).triangles})

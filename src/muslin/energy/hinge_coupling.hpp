@@ -52,7 +52,8 @@ struct HingeCoupling {
 /// the bias too low.
 HingeCoupling couple_hinges(const Shell& shell, const BendingModuli& moduli,
                             std::span<const std::uint8_t> held = {});
-/// With moduli by triangle, #T, or one for all. Where some have stiffness, all get 1e-8 of the stiffest.
+/// Takes the moduli of each triangle, #T, or one for all. If some triangles have stiffness, those without get
+/// 1e-8 of the stiffest.
 HingeCoupling couple_hinges(const Shell& shell, std::span<const BendingModuli> moduli,
                             std::span<const std::uint8_t> held);
 PlateCurvatures plate_curvatures(const Shell& shell, const BendingModuli& moduli,

@@ -24,7 +24,7 @@ struct MUSLIN_API Keyed {
   Vec3 integral(double time) const;
 };
 
-/// A number, likewise.
+/// A number, constant or keyframed in the same way.
 struct MUSLIN_API KeyedNumber {
   KeyedNumber() = default;
   KeyedNumber(double constant) : keys{{0, constant}} {}  // NOLINT(google-explicit-constructor): is one

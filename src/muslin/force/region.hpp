@@ -17,7 +17,7 @@ struct MUSLIN_API Region {
     Vec3 center;
     double radius;
   };
-  /// With flat ends at `from` and `to`, which differ.
+  /// Its flat ends are at `from` and `to`, which differ.
   struct CylinderShape {
     Vec3 from, to;
     double radius;

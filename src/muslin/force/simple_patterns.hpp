@@ -5,7 +5,7 @@
 
 namespace muslin {
 
-/// The same vector everywhere; the falloff counts from the centre.
+/// One vector, which does not depend on the place. The falloff counts from the centre.
 class UniformPattern : public FieldPattern {
  public:
   explicit UniformPattern(const Vec3& direction) : direction_(direction) {}
@@ -15,7 +15,7 @@ class UniformPattern : public FieldPattern {
   Vec3 direction_;
 };
 
-/// Away from the centre, with length 1; zero in the centre.
+/// The vector of length 1 that points away from the centre, in which it is zero.
 class RadialPattern : public FieldPattern {
  public:
   FieldSample at(const Vec3& place, double) const override {

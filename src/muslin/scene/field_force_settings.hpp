@@ -16,7 +16,7 @@ namespace muslin {
 struct FieldForceSettings {
   enum class ActsAs { wind, acceleration };
 
-  // Of all kinds.
+  // Every kind has these.
   ActsAs acts_as = ActsAs::acceleration;  ///< drag always slows
   std::string wind;                       ///< the name of the wind to which it adds; empty: the only one
   KeyedNumber strength = 1;               ///< [m/s] or [m/s²]; of a drag a factor

@@ -29,7 +29,7 @@ struct Terms {
   }
   /// Returns the potential of each load in a step; null where it does not act.
   std::vector<std::unique_ptr<Potential>> potentials_of_loads(const StepContext& context) const;
-  /// Likewise of the loads that drive; null of all others.
+  /// Returns those of the loads that drive; null for all others.
   std::vector<std::unique_ptr<Potential>> driving_potentials(const StepContext& context) const;
   /// Returns hashes of the names, #slots.
   std::vector<std::uint64_t> keys() const;

@@ -12,8 +12,8 @@
 
 namespace muslin {
 
-/// In the last step: of a hard pin the force that keeps its vertices where they are, against inertia and all
-/// other forces; of a soft one that of its springs and dashpots. 0 while the pin does not act.
+/// The force in the last step. A hard pin exerts what keeps its vertices where they are, against inertia and
+/// all other forces; a soft one the force of its springs and dashpots; a pin that does not act exerts 0.
 struct PinForce {
   Vec3 sum = Vec3::Zero();  ///< on all of its vertices [N]
   double mean = 0;          ///< magnitude on a vertex, mean over its vertices [N]

@@ -138,7 +138,7 @@ class ShellTerms {
         {"bending", EnergyRole::elastic,
          std::make_shared<PlasticBending>(body_.name, body_.shell, plate(), yield, elastic, held)});
   }
-  /// Where a damping varies, its elements are those of the energy with a stiffness that varies as it does.
+  /// A damping that varies acts through elements of its own, whose stiffness is scaled by it.
   void add_dampings(const Pattern& pattern, std::span<const std::uint8_t> held,
                     std::shared_ptr<const ElementEnergy> membrane,
                     std::shared_ptr<const ElementEnergy> bending) {
