@@ -37,14 +37,6 @@ struct BendingFriction::Sheet {
   PlateCurvatures curvatures;
   std::vector<double> areas;
   Slider warp, weft;
-
-  std::vector<Vec2> curvatures_of(std::span<const double> deviations) const {
-    std::vector<Vec2> result(areas.size());
-    parallel_for(result.size(), friction_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) result[t] = curvatures.of(t, deviations);
-    });
-    return result;
-  }
 };
 
 /// The energy of one step.
@@ -66,13 +58,13 @@ class BendingFriction::Energy : public ElementEnergy {
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override {
     const HingeAngles& angles = *sheet_->angles;
     const std::vector<Vec2> e = extensions(x);
-    std::vector<Vec2> changes = sheet_->curvatures_of(angles.changes(x, p));
+    std::vector<Vec2> changes = sheet_->curvatures.of_all(angles.changes(x, p));
     const std::vector<Vec2> stiffness = stiffnesses(e);
     for (std::size_t t = 0; t < changes.size(); ++t) changes[t] = changes[t].cwiseProduct(stiffness[t]);
     if (kind == Stiffness::exact) {
-      angles.add_force_changes(x, to_hinges(changes), moments(e), p, y);
+      angles.add_force_changes(x, sheet_->curvatures.transposed(changes), moments(e), p, y);
     } else {
-      angles.add_forces(x, to_hinges(changes), y);
+      angles.add_forces(x, sheet_->curvatures.transposed(changes), y);
     }
   }
   void add_stiffness_blocks(Stiffness, ConstVectors x, std::span<Mat3> blocks) const override {
@@ -98,7 +90,7 @@ class BendingFriction::Energy : public ElementEnergy {
  private:
   /// κ − κ_s of every triangle.
   std::vector<Vec2> extensions(ConstVectors x) const {
-    std::vector<Vec2> result = sheet_->curvatures_of(sheet_->angles->deviations(x));
+    std::vector<Vec2> result = sheet_->curvatures.of_all(sheet_->angles->deviations(x));
     for (std::size_t t = 0; t < result.size(); ++t) result[t] -= slid_[t];
     return result;
   }
@@ -134,13 +126,9 @@ class BendingFriction::Energy : public ElementEnergy {
     return sheet_->curvatures.lumped(stiffnesses(extensions(x)));
   }
 
-  std::vector<double> to_hinges(const std::vector<Vec2>& of_triangle) const {
-    std::vector<double> result(sheet_->angles->count(), 0.0);
-    sheet_->curvatures.add_transposed(of_triangle, result);
-    return result;
-  }
   std::vector<double> moments(const std::vector<Vec2>& e) const {
-    return to_hinges(by_triangle(e, [](const Slider& slider, double x) { return slider.moment(x); }));
+    return sheet_->curvatures.transposed(
+        by_triangle(e, [](const Slider& slider, double x) { return slider.moment(x); }));
   }
 
   std::shared_ptr<const Sheet> sheet_;
@@ -168,7 +156,7 @@ std::unique_ptr<Potential> BendingFriction::potential(const StepContext& step) c
       step.history != nullptr ? step.history->find(name_, 2 * count) : std::span<const double>();
   std::vector<Vec2> slid;
   if (numbers.empty()) {
-    slid = sheet_->curvatures_of(sheet_->angles->deviations(step.positions));
+    slid = sheet_->curvatures.of_all(sheet_->angles->deviations(step.positions));
   } else {
     slid.resize(count);
     for (std::size_t t = 0; t < count; ++t) slid[t] = Vec2(numbers[2 * t], numbers[2 * t + 1]);

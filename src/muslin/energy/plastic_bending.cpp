@@ -73,18 +73,6 @@ struct PlasticBending::Sheet {
   std::shared_ptr<const ShellBending> elastic;
   FormCoupling forms;  // with a pattern
 
-  std::vector<Vec3> curvatures_of(std::span<const double> deviations) const {
-    std::vector<Vec3> result(areas.size());
-    parallel_for(result.size(), plastic_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) result[t] = curvatures.rows.of(t, deviations);
-    });
-    return result;
-  }
-  std::vector<double> to_hinges(std::span<const Vec3> of_triangle) const {
-    std::vector<double> result(curvatures.rows.hinge_count, 0.0);
-    curvatures.rows.add_transposed(of_triangle, result);
-    return result;
-  }
   /// Returns the coupling of the stiffness PᵀP but for the diagonal matrix `lumped`.
   std::shared_ptr<const FormCoupling> coupled(std::span<const Mat3> roots,
                                               std::span<const double> lumped) const {
@@ -132,21 +120,22 @@ class PlasticBending::Energy : public ElementEnergy {
   }
 
   void add_stiffness_product(Stiffness kind, ConstVectors x, ConstVectors p, Vectors y) const override {
-    std::vector<Vec3> changes = sheet_->curvatures_of(angles().changes(x, p));
-    const std::vector<Mat3> roots = roots_at(x);
+    const std::vector<Vec3> bent_to = bent(x);
+    const std::vector<Mat3> roots = roots_of(bent_to);
+    std::vector<Vec3> changes = rows().of_all(angles().changes(x, p));
     for (std::size_t t = 0; t < changes.size(); ++t) changes[t] = roots[t] * (roots[t] * changes[t]);
     if (kind == Stiffness::exact) {
-      angles().add_force_changes(x, sheet_->to_hinges(changes), moments(bent(x)), p, y);
+      angles().add_force_changes(x, rows().transposed(changes), moments(bent_to), p, y);
     } else {
-      angles().add_forces(x, sheet_->to_hinges(changes), y);
+      angles().add_forces(x, rows().transposed(changes), y);
     }
   }
   void add_stiffness_blocks(Stiffness, ConstVectors x, std::span<Mat3> blocks) const override {
-    angles().add_blocks(x, sheet_->curvatures.rows.lumped_by(roots_at(x)), blocks);
+    angles().add_blocks(x, rows().lumped_by(roots_at(x)), blocks);
   }
   void add_stiffness_matrix(Stiffness, ConstVectors x, double scale, std::span<const double>,
                             PairBlocks blocks) const override {
-    angles().assemble(x, sheet_->curvatures.rows.lumped_by(roots_at(x)), scale, blocks, nullptr);
+    angles().assemble(x, rows().lumped_by(roots_at(x)), scale, blocks, nullptr);
   }
   void linearize_stiffness(Stiffness kind, ConstVectors x, double factor, HessianSink& into,
                            std::size_t first) const override {
@@ -157,7 +146,7 @@ class PlasticBending::Energy : public ElementEnergy {
     if (!any) return sheet_->elastic->linearize_stiffness(kind, x, factor, into, first);
     const double scale = into.scale() * factor;
     const std::vector<Mat3> roots = roots_of(y);
-    const std::vector<double> lumped = sheet_->curvatures.rows.lumped_by(roots);
+    const std::vector<double> lumped = rows().lumped_by(roots);
     const bool whole = sheet_->elastic->is_stiff(scale, into.masses().subspan(first, x.size()),
                                                  into.fixed().subspan(first, x.size()));
     angles().assemble(x, lumped, scale, into.pair_blocks(pattern(), first),
@@ -178,9 +167,10 @@ class PlasticBending::Energy : public ElementEnergy {
   }
 
  private:
+  const CurvatureRows<Vec3>& rows() const { return sheet_->curvatures.rows; }
   const HingeAngles& angles() const { return *sheet_->elastic->angles(); }
   /// y of every triangle.
-  std::vector<Vec3> bent(ConstVectors x) const { return sheet_->curvatures_of(angles().deviations(x)); }
+  std::vector<Vec3> bent(ConstVectors x) const { return rows().of_all(angles().deviations(x)); }
 
   /// Returns ∫ f dA, f by y and e.
   template <class Function>
@@ -201,7 +191,7 @@ class PlasticBending::Energy : public ElementEnergy {
       for (std::size_t t = begin; t < end; ++t)
         result[t] = sheet_->areas[t] * sheet_->plate.moment(y[t], y[t] - set_[t]);
     });
-    return sheet_->to_hinges(result);
+    return rows().transposed(result);
   }
   /// Returns P of every triangle, times the root of its area.
   std::vector<Mat3> roots_of(const std::vector<Vec3>& y) const {

@@ -51,6 +51,15 @@ void CurvatureRows<Curvature>::find_uses() {
 }
 
 template <class Curvature>
+std::vector<Curvature> CurvatureRows<Curvature>::of_all(std::span<const double> deviations) const {
+  std::vector<Curvature> result(first.size() - 1);
+  parallel_for(result.size(), curvature_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) result[t] = of(t, deviations);
+  });
+  return result;
+}
+
+template <class Curvature>
 void CurvatureRows<Curvature>::add_transposed(std::span<const Curvature> of_triangle,
                                               std::span<double> moments) const {
   parallel_for(moments.size(), curvature_block, [&](std::size_t begin, std::size_t end) {

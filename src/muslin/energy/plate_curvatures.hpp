@@ -38,8 +38,16 @@ struct CurvatureRows {
       sum += deviations[at(hinges[at(k)])] * weights[at(k)];
     return sum;
   }
+  /// Returns those of all triangles.
+  std::vector<Curvature> of_all(std::span<const double> deviations) const;
   /// moments += Bᵀ `of_triangle`
   void add_transposed(std::span<const Curvature> of_triangle, std::span<double> moments) const;
+  /// Returns Bᵀ `of_triangle`, by hinge.
+  std::vector<double> transposed(std::span<const Curvature> of_triangle) const {
+    std::vector<double> moments(hinge_count, 0.0);
+    add_transposed(of_triangle, moments);
+    return moments;
+  }
   /// Returns the diagonal of a matrix Λ with Bᵀ C B ≤ 2 Λ, C diagonal: `of_triangle` ≥ 0.
   std::vector<double> lumped(std::span<const Curvature> of_triangle) const;
   /// Returns that of C = PᵀP, one P for each triangle.
