@@ -1,27 +1,21 @@
 // yield_curvature, yield_hardening and yield_recovery of a shell: a strip keeps a crease, loses it again in
 // time, and its losses are in the energy balance; resumed runs have the same bits; what is wrong.
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "support/sheet.hpp"
+#include "support/rolled_strip.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "muslin/component/shell/shell_body.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
-#include "muslin/energy/hinge_angles.hpp"
-#include "muslin/energy/hinge_coupling.hpp"
-#include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
 namespace {
 
-constexpr double edge = 0.01;                 // [m]
 constexpr double rolled_to = 30, yield = 10;  // [1/m]
 const std::string paper = "bending_warp = 1e-4, yield_curvature = 10";
 
@@ -45,22 +39,11 @@ material = { areal_density = 0.1, membrane_warp = 50, poisson = 0, mass_damping 
 where = { plane = { point = [0, 0, 0], normal = [1, 0, 0], distance = 0.011 } }
 )",
                             "scene.toml");
-  scene.meshes["strip.obj"] = std::make_shared<Mesh>(test::flat_sheet(7, 3, 7 * edge, 3 * edge));
+  scene.meshes["strip.obj"] = test::strip_mesh();
   return scene;
 }
 std::shared_ptr<const Model> model(const std::string& keys) {
   return std::make_shared<const Model>(build_model(strip(keys)));
-}
-
-/// The strip in a roll, flat where it is clamped.
-std::vector<Vec3> rolled(const Model& model, double curvature) {
-  std::vector<Vec3> x;
-  for (const Vec3& p : model.rest_positions) {
-    const double angle = curvature * std::max(0.0, p.x() - edge);
-    x.emplace_back(std::min(p.x(), edge) + std::sin(angle) / curvature, (1 - std::cos(angle)) / curvature,
-                   p.z());
-  }
-  return x;
 }
 
 double kept(double hardening) { return (1 - hardening) * (rolled_to - yield); }
@@ -69,32 +52,10 @@ double kept(double hardening) { return (1 - hardening) * (rolled_to - yield); }
 Simulation rolled_up(const std::shared_ptr<const Model>& model, double hardening = 0) {
   Simulation simulation(model);
   simulation.advance();
-  simulation.set_positions(rolled(*model, rolled_to));
+  simulation.set_positions(test::rolled_strip(*model, rolled_to));
   simulation.advance();
-  simulation.set_positions(rolled(*model, kept(hardening) + 2));
+  simulation.set_positions(test::rolled_strip(*model, kept(hardening) + 2));
   return simulation;
-}
-
-/// Least and greatest curvature along the strip, but for its free end, which begins to move at once.
-std::pair<double, double> curvatures(const Simulation& simulation) {
-  const Model& model = simulation.model();
-  const Shell& shell = as_shell(model.bodies[0])->shell;
-  std::vector<std::uint8_t> held(model.vertex_count(), 0);
-  for (const int v : model.pins[0].vertices) held[static_cast<std::size_t>(v)] = 1;
-  const std::vector<double> bent = HingeAngles(shell, nullptr).deviations(simulation.state().positions);
-  const PlateCurvatures plate = plate_curvatures(shell, {1, 1, 1, 0}, held);
-  double least = rolled_to, greatest = -rolled_to;
-  for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
-    const auto x = [&](int c) {
-      return model.rest_positions[static_cast<std::size_t>(shell.triangles[t][c])].x();
-    };
-    const double middle = (x(0) + x(1) + x(2)) / 3;
-    if (middle < edge || middle > 4.5 * edge) continue;
-    const double curvature = std::abs(plate.of(t, bent)[0]);
-    least = std::min(least, curvature);
-    greatest = std::max(greatest, curvature);
-  }
-  return {least, greatest};
 }
 
 /// The run after 0.4 s.
@@ -116,7 +77,7 @@ Simulation settled(const std::string& keys, double hardening = 0) {
 TEST(PlasticShell, StripThatIsLetGoKeepsWhatIsBeyondYieldAndItsAccountCloses) {
   for (const double hardening : {0.0, 0.2}) {
     const Simulation simulation = settled(paper, hardening);
-    const auto [least, greatest] = curvatures(simulation);
+    const auto [least, greatest] = test::strip_curvatures(simulation);
     EXPECT_NEAR(least / kept(hardening), 1, 0.02) << hardening;
     EXPECT_NEAR(greatest / kept(hardening), 1, 0.02) << hardening;
   }
@@ -124,7 +85,7 @@ TEST(PlasticShell, StripThatIsLetGoKeepsWhatIsBeyondYieldAndItsAccountCloses) {
 
 TEST(PlasticShell, CreaseFadesWithTheTimeOfRecovery) {
   const Simulation simulation = settled(paper + ", yield_recovery = 0.02");
-  EXPECT_LT(curvatures(simulation).second, 0.01 * rolled_to);
+  EXPECT_LT(test::strip_curvatures(simulation).second, 0.01 * rolled_to);
 }
 
 TEST(PlasticShell, ResumedRunAndAnyNumberOfThreadsHaveTheSameBits) {

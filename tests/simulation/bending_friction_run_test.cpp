@@ -5,19 +5,14 @@
 #include <memory>
 #include <string>
 
-#include "support/sheet.hpp"
+#include "support/rolled_strip.hpp"
 #include <gtest/gtest.h>
-
-#include "muslin/component/shell/shell_body.hpp"
-#include "muslin/energy/hinge_angles.hpp"
-#include "muslin/energy/hinge_coupling.hpp"
-#include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
 namespace {
 
-constexpr double rigidity = 1e-4, friction = 1e-3, edge = 0.01;  // [N·m], [N], [m]
-constexpr double rolled_to = 30;                                 // [1/m]
+constexpr double rigidity = 1e-4, friction = 1e-3;  // [N·m], [N]
+constexpr double rolled_to = 30;                    // [1/m]
 
 /// A strip of 7 by 3 squares, the first row clamped.
 std::shared_ptr<const Model> strip(const std::string& limits, const std::string& time = "steps_per_frame = 2",
@@ -36,64 +31,30 @@ material = { areal_density = 0.1, membrane_warp = 50, poisson = 0, bending_warp 
 where = { plane = { point = [0, 0, 0], normal = [1, 0, 0], distance = 0.011 } }
 )",
                             "scene.toml");
-  scene.meshes["strip.obj"] = std::make_shared<Mesh>(test::flat_sheet(7, 3, 7 * edge, 3 * edge));
+  scene.meshes["strip.obj"] = test::strip_mesh();
   return std::make_shared<const Model>(build_model(scene));
 }
 const std::string with_friction = ", bending_friction_warp = 1e-3, bending_friction_curvature = 2";
-
-/// The strip in a roll, flat where it is clamped.
-std::vector<Vec3> rolled(const Model& model) {
-  std::vector<Vec3> x;
-  for (const Vec3& p : model.rest_positions) {
-    const double along = std::max(0.0, p.x() - edge);
-    const double angle = rolled_to * along;
-    x.emplace_back(std::min(p.x(), edge) + std::sin(angle) / rolled_to, (1 - std::cos(angle)) / rolled_to,
-                   p.z());
-  }
-  return x;
-}
 
 /// The run after a first frame, flat and at rest, in which it was rolled up.
 Simulation rolled_up(const std::shared_ptr<const Model>& model) {
   Simulation simulation(model);
   simulation.advance();
-  simulation.set_positions(rolled(*model));
+  simulation.set_positions(test::rolled_strip(*model, rolled_to));
   return simulation;
-}
-
-/// Least and greatest curvature along the strip, but for its free end, which swings.
-std::pair<double, double> curvatures(const Simulation& simulation) {
-  const Model& model = simulation.model();
-  const Shell& shell = as_shell(model.bodies[0])->shell;
-  std::vector<std::uint8_t> held(model.vertex_count(), 0);
-  for (const int v : model.pins[0].vertices) held[static_cast<std::size_t>(v)] = 1;
-  const std::vector<double> bent = HingeAngles(shell, nullptr).deviations(simulation.state().positions);
-  const PlateCurvatures plate = plate_curvatures(shell, {1, 1, 1, 0}, held);
-  double least = rolled_to, greatest = -rolled_to;
-  for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
-    const auto x = [&](int c) {
-      return model.rest_positions[static_cast<std::size_t>(shell.triangles[t][c])].x();
-    };
-    const double middle = (x(0) + x(1) + x(2)) / 3;
-    if (middle < edge || middle > 4.5 * edge) continue;
-    const double curvature = std::abs(plate.of(t, bent)[0]);
-    least = std::min(least, curvature);
-    greatest = std::max(greatest, curvature);
-  }
-  return {least, greatest};
 }
 
 TEST(BendingFrictionRun, StripThatIsLetGoStaysBentByTheFrictionOverItsRigidity) {
   Simulation simulation = rolled_up(strip(with_friction));
-  EXPECT_NEAR(curvatures(simulation).second, rolled_to, 0.1);
+  EXPECT_NEAR(test::strip_curvatures(simulation).second, rolled_to, 0.1);
   while (simulation.frame() < 100) simulation.advance();
-  const auto [least, greatest] = curvatures(simulation);
+  const auto [least, greatest] = test::strip_curvatures(simulation);
   EXPECT_LE(greatest, 1.01 * friction / rigidity);
   EXPECT_GE(least, 0.99 * friction / rigidity);
 
   Simulation elastic = rolled_up(strip(""));
   while (elastic.frame() < 100) elastic.advance();
-  EXPECT_LT(curvatures(elastic).second, 0.01 * friction / rigidity);
+  EXPECT_LT(test::strip_curvatures(elastic).second, 0.01 * friction / rigidity);
 }
 
 class BendingFrictionBalance : public testing::TestWithParam<std::string> {};
