@@ -8,14 +8,7 @@ namespace muslin {
 namespace {
 
 const schema::Table& sphere_region_table() {
-  using Sphere = Region::SphereShape;
-  static const schema::Table table = schema::table_of<Sphere>(
-      "`region.sphere`", {schema::vector("center", &Sphere::center).unit("m").required().means("its centre"),
-                          schema::number("radius", &Sphere::radius)
-                              .unit("m")
-                              .range(Range::positive())
-                              .required()
-                              .means("its radius")});
+  static const schema::Table table = sphere_keys<Region::SphereShape>("`region.sphere`");
   return table;
 }
 

@@ -1,4 +1,4 @@
-// Declares keys whose value is a list of points.
+// Declares keys whose value is a list of points, and the shapes that selections and regions share.
 #pragma once
 
 #include <optional>
@@ -32,6 +32,18 @@ schema::Declaration box_key(std::optional<Shape> S::* member) {
   key.unit = "m";
   key.count = 2;
   return schema::Declaration(std::move(key));
+}
+
+/// The keys of a ball: of a shape with `center` and `radius`.
+template <class Sphere>
+schema::Table sphere_keys(std::string table) {
+  return schema::table_of<Sphere>(
+      std::move(table), {schema::vector("center", &Sphere::center).unit("m").required().means("its centre"),
+                         schema::number("radius", &Sphere::radius)
+                             .unit("m")
+                             .range(Range::positive())
+                             .required()
+                             .means("its radius")});
 }
 
 }  // namespace muslin

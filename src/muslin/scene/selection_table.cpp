@@ -25,14 +25,7 @@ void read_nearest(const Key& key, const TomlTable& where, Selection& selection) 
 }
 
 const schema::Table& inside_sphere_table() {
-  using Sphere = Selection::SphereShape;
-  static const schema::Table table = schema::table_of<Sphere>(
-      "`where.sphere`", {schema::vector("center", &Sphere::center).unit("m").required().means("its centre"),
-                         schema::number("radius", &Sphere::radius)
-                             .unit("m")
-                             .range(Range::positive())
-                             .required()
-                             .means("its radius")});
+  static const schema::Table table = sphere_keys<Selection::SphereShape>("`where.sphere`");
   return table;
 }
 
