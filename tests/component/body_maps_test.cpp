@@ -162,13 +162,36 @@ TEST_F(Maps, LetNumbersThatFollowFromOthersFollowEverywhere) {
   }
 }
 
-TEST_F(Maps, ChangeTheHashThatASavedStateMustFit) {
-  const std::string numbers = std::string(shell) + "mass_damping = { map = 'ramp.csv', from = 1, to = ";
+TEST_F(Maps, OfDensityChangeTheHashThatASavedStateMustFit) {
+  const std::string numbers =
+      "model = 'shell'\nmaterial = { membrane_warp = 100, bending_warp = 1e-5, areal_density = "
+      "{ map = 'ramp.csv', from = 1, to = ";
   const auto hash = [&](const std::string& to) {
     return model(numbers + to + " } }")->bodies[0].material_hash(0);
   };
   EXPECT_EQ(hash("2"), hash("2"));
   EXPECT_NE(hash("2"), hash("3"));
+}
+
+TEST_F(Maps, OfStiffnessMayChangeOnAResumeWhichTheAccountShows) {
+  const auto cloth = [&](const std::string& to) {
+    return model(
+        "model = 'shell'\nwarp = [1, 0, 0]\nmaterial = { areal_density = 0.1, bending_warp = 1e-5, "
+        "membrane_warp = { map = 'ramp.csv', from = 10, to = " +
+            to + " } }\n",
+        "[[force]]\ntype = 'gravity'\n");
+  };
+  Simulation before(cloth("20"));
+  for (int f = 0; f < 3; ++f) before.advance();
+  Simulation same(cloth("20")), after(cloth("40"));
+  for (Simulation* resumed : {&same, &after}) {
+    resumed->restore(before.checkpoint());
+    resumed->advance();
+  }
+  EXPECT_EQ(same.diagnostics().material_work, 0);
+  const Diagnostics start = before.diagnostics(), end = after.diagnostics();
+  EXPECT_GT(end.material_work, 0.01 * start.elastic);
+  EXPECT_NEAR(end.balance() - end.unbalanced, start.balance() - start.unbalanced, 1e-12);
 }
 
 TEST_F(Maps, ThatAreWrongAreErrorsAtTheirPlace) {

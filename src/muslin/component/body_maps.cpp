@@ -64,7 +64,10 @@ class MapReader {
       const Place& place = error.place();
       const std::string line = place.line > 0 ? fmt::format(" line {}:", place.line) : "";
       throw Error(error.kind(), variation_.place,
-                  fmt::format("the map `{}`:{} {}", variation_.map, line, error.problem()), error.remedy());
+                  fmt::format("the map `{}`:{} {}", variation_.map, line, error.problem()),
+                  error.kind() == ErrorKind::input
+                      ? "give one finite number for each vertex, a line each in .csv"
+                      : error.remedy());
     }
   }
 
@@ -95,8 +98,9 @@ std::vector<MappedNumber> read_maps(const schema::Variations& variations, const 
   for (std::size_t i = 0; i < variations.size(); ++i) {
     const schema::Variation& variation = variations[i];
     if (!variation.is_map()) continue;
-    maps.push_back({variation, keys.find(variation.key)->unit, i,
-                    MapReader(variation, attributes, inputs, component).weights()});
+    const schema::Key& key = *keys.find(variation.key);
+    maps.push_back({variation, key.unit, i, MapReader(variation, attributes, inputs, component).weights(),
+                    key.may_change_on_resume});
   }
   return maps;
 }
@@ -125,6 +129,7 @@ std::vector<MappedNumber> over_lattice(const std::vector<MappedNumber>& maps, co
 
 std::uint64_t maps_hash(const std::vector<MappedNumber>& maps, std::uint64_t seed) {
   for (const MappedNumber& map : maps) {
+    if (map.may_change_on_resume) continue;
     std::vector<double> numbers;
     numbers.reserve(map.weights.size());
     for (std::size_t v = 0; v < map.weights.size(); ++v) numbers.push_back(map.at(v));

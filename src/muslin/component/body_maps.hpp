@@ -23,7 +23,7 @@ std::vector<MappedNumber> read_maps(const schema::Variations& variations, const 
 std::vector<MappedNumber> over_lattice(const std::vector<MappedNumber>& maps, const Mesh& mesh,
                                        const Lattice& lattice);
 
-/// Continues a hash with the numbers of maps at every vertex.
+/// Continues a hash with the numbers at every vertex of the maps that may not change when a run is resumed.
 std::uint64_t maps_hash(const std::vector<MappedNumber>& maps, std::uint64_t seed);
 
 }  // namespace muslin

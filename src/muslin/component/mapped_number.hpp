@@ -16,6 +16,7 @@ struct MappedNumber {
   std::string unit;             ///< empty: none
   std::size_t index = 0;        ///< of the variation among those of its settings
   std::vector<double> weights;  ///< #vertices, 0 to 1
+  bool may_change_on_resume = false;
 
   double at(std::size_t vertex) const { return variation.at_weight(weights[vertex]); }
   /// Returns the number where the weight is the mean of those of some vertices.
