@@ -14,16 +14,6 @@ Vector = Union[Sequence[float], npt.NDArray[np.floating[Any]]]
 Points = Union[Sequence[Vector], npt.NDArray[np.floating[Any]]]
 Path = Union[str, os.PathLike[str], Mesh]
 
-KeyframesOfAVaryingNumber = TypedDict(
-    "KeyframesOfAVaryingNumber",
-    {
-        "time": Required[float],  # time of the keyframe, later than the previous one [s]
-        "value": Required[float],  # the number at that time
-        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
-    },
-    total=False,
-)
-
 RegionPlane = TypedDict(
     "RegionPlane",
     {
@@ -100,7 +90,7 @@ ANumberThatVaries = TypedDict(
         "lowest": Optional[float],  # value of the map that stands for `from`
         "highest": Optional[float],  # value of the map that stands for `to`
         "curve": Optional[Points],  # points `[[weight, share], …]` between 0 and 1: the number goes from `from` to `to` by the share
-        "keyframes": Optional[Sequence["KeyframesOfAVaryingNumber"]],  # when it varies: constant before the first and after the last
+        "keyframes": Optional[Sequence["KeyframesOfANumber"]],  # when it varies: constant before the first and after the last
     },
     total=False,
 )

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "muslin/component/placement.hpp"
-#include "muslin/schema/interpolation_key.hpp"
+#include "muslin/schema/keyframe_keys.hpp"
 
 namespace muslin {
 namespace {

@@ -17,6 +17,14 @@ enum class Interpolation {
   smooth,  ///< 3s² − 2s³ of the way after a share s of the time: begins and ends at rest, never overshoots
 };
 
+struct NumberKeyframe {
+  double time = 0;  ///< [s]
+  double value = 0;
+  Interpolation interpolation = Interpolation::linear;  ///< to the next keyframe
+
+  bool operator==(const NumberKeyframe&) const = default;
+};
+
 /// Returns the share of the way that is done after a share s of the time, 0 ≤ s < 1.
 inline double share_done(Interpolation interpolation, double s) {
   if (interpolation == Interpolation::step) return 0;

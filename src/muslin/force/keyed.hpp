@@ -28,12 +28,7 @@ struct MUSLIN_API Keyed {
 struct MUSLIN_API KeyedNumber {
   KeyedNumber() = default;
   KeyedNumber(double constant) : keys{{0, constant}} {}  // NOLINT(google-explicit-constructor): is one
-  struct Key {
-    double time = 0;  ///< [s]
-    double value = 0;
-    Interpolation interpolation = Interpolation::linear;  ///< to the next key
-    bool operator==(const Key&) const = default;
-  };
+  using Key = NumberKeyframe;
   std::vector<Key> keys;  ///< at least one, times ascend strictly
 
   bool is_constant() const { return keys.size() == 1; }

@@ -10,7 +10,7 @@ namespace {
 
 bool changes(const schema::Variation& variation) {
   return std::any_of(variation.keyframes.begin(), variation.keyframes.end(),
-                     [&](const schema::NumberKeyframe& key) { return key.value != variation.nominal(); });
+                     [&](const NumberKeyframe& key) { return key.value != variation.nominal(); });
 }
 
 template <class AnyMaterial>
@@ -38,7 +38,7 @@ std::vector<double> keyframe_times(const schema::Variations& variations) {
   std::vector<double> times;
   for (const schema::Variation& variation : variations)
     if (changes(variation))
-      for (const schema::NumberKeyframe& key : variation.keyframes) times.push_back(key.time);
+      for (const NumberKeyframe& key : variation.keyframes) times.push_back(key.time);
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;

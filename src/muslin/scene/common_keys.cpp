@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "muslin/core/nearest_name.hpp"
-#include "muslin/schema/interpolation_key.hpp"
+#include "muslin/schema/keyframe_keys.hpp"
 
 namespace muslin {
 
@@ -14,24 +14,11 @@ void check_window(double from, double until, const schema::Subject& subject) {
 }
 
 const schema::Table& keyed_number_table() {
-  static const schema::Table table = [] {
-    const auto keyframe_table = []() -> const schema::Table& {
-      static const schema::Table keyframe = schema::table_of<KeyedNumber::Key>(
-          "keyframes of a number",
-          {schema::number("time", &KeyedNumber::Key::time)
-               .unit("s")
-               .required()
-               .means("time of the keyframe, later than the previous one"),
-           schema::number("value", &KeyedNumber::Key::value).required().means("the number at that time"),
-           schema::interpolation_key<KeyedNumber::Key>()});
-      return keyframe;
-    };
-    return schema::table_of<KeyedNumber>(
-        "a number over time",
-        {schema::keyframes("keyframes", &KeyedNumber::keys, +keyframe_table)
-             .required()
-             .means("a list of tables; times ascend; constant before the first and after the last")});
-  }();
+  static const schema::Table table = schema::table_of<KeyedNumber>(
+      "a number over time",
+      {schema::keyframes("keyframes", &KeyedNumber::keys, schema::number_keyframe_table)
+           .required()
+           .means("a list of tables; times ascend; constant before the first and after the last")});
   return table;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "muslin/scene/common_keys.hpp"
-#include "muslin/schema/interpolation_key.hpp"
+#include "muslin/schema/keyframe_keys.hpp"
 
 namespace muslin {
 

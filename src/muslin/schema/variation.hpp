@@ -7,6 +7,7 @@
 // key's own member then holds the nominal value.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,12 +18,6 @@
 #include "muslin/core/vectors.hpp"
 
 namespace muslin::schema {
-
-struct NumberKeyframe {
-  double time = 0;  ///< [s]
-  double value = 0;
-  Interpolation interpolation = Interpolation::linear;  ///< from this keyframe to the next
-};
 
 struct MUSLIN_API Variation {
   std::string key;  ///< that varies
@@ -39,6 +34,8 @@ struct MUSLIN_API Variation {
   double at_weight(double weight) const;
   /// Returns the number that stands for all others: the middle of a map, the first keyframe.
   double nominal() const;
+  /// Returns the greatest number of a map.
+  double greatest() const { return std::max(from, to); }
 };
 using Variations = std::vector<Variation>;
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "muslin/schema/declare.hpp"
-#include "muslin/schema/interpolation_key.hpp"
+#include "muslin/schema/keyframe_keys.hpp"
 
 namespace muslin::schema {
 namespace {
@@ -28,6 +28,9 @@ struct ShareCurveCodec {
       curve.emplace_back(to_number(item.items[0], name, "", key.range),
                          to_number(item.items[1], name, "", key.range));
     }
+    if (curve.empty())
+      throw table.error(key.name, fmt::format("`{}` has no point", key.name),
+                        fmt::format("give {}", described(key)));
     check(key, curve, Subject(table));
     return curve;
   }
@@ -46,18 +49,6 @@ struct ShareCurveCodec {
     }
   }
 };
-
-const Table& number_keyframe_table() {
-  static const Table table = table_of<NumberKeyframe>(
-      "keyframes of a varying number",
-      {number("time", &NumberKeyframe::time)
-           .unit("s")
-           .required()
-           .means("time of the keyframe, later than the previous one"),
-       number("value", &NumberKeyframe::value).required().means("the number at that time"),
-       interpolation_key<NumberKeyframe>()});
-  return table;
-}
 
 /// The forms of a key besides a number, for messages: " or a map".
 std::string other_forms(const Key& key) {

@@ -238,7 +238,7 @@ class LatticeTerms {
   /// The greatest value of a number that may vary by a map.
   double greatest(std::string_view key, double number) const {
     const MappedNumber* map = find_map(body_.maps, key);
-    return map != nullptr ? std::max(map->variation.from, map->variation.to) : number;
+    return map != nullptr ? map->variation.greatest() : number;
   }
 
   const BodySettings& settings_;

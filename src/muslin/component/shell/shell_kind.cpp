@@ -106,7 +106,7 @@ const schema::Table& keys() {
 std::optional<double> largest_limit(const ShellMaterial& material) {
   const schema::Variation* variation = schema::find_variation(material.variations, "stretch_limit");
   if (variation == nullptr || !variation->is_map()) return material.stretch_limit;
-  return std::max(variation->from, variation->to);
+  return variation->greatest();
 }
 
 void finish(const TomlTable& table, const std::filesystem::path& folder, BodySettings& body,

@@ -51,7 +51,7 @@ class ShellTerms {
     add_dampings(pattern, held, membrane, bending);
     const std::vector<double> masses = body_.masses();
     const MappedNumber* map = find_map(body_.maps, "mass_damping");
-    const double slowing = map != nullptr ? std::max(map->variation.from, map->variation.to) : m.mass_damping;
+    const double slowing = map != nullptr ? map->variation.greatest() : m.mass_damping;
     bound_.apply(masses, slowing, body_.statistics);
   }
 

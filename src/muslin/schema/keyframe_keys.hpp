@@ -1,8 +1,5 @@
-// Declares `interpolation` of keyframes.
+// Declares the keys that keyframes have in common.
 #pragma once
-
-#include <string>
-#include <vector>
 
 #include "muslin/core/keyframes.hpp"
 #include "muslin/schema/declare.hpp"
@@ -17,5 +14,8 @@ Declaration interpolation_key() {
           "the way to the next keyframe: `\"linear\"`, at a constant rate · `\"step\"`, at once when it is "
           "reached · `\"smooth\"`, begins and ends at rest and never overshoots");
 }
+
+/// The keys of a NumberKeyframe.
+const Table& number_keyframe_table();
 
 }  // namespace muslin::schema
