@@ -113,6 +113,18 @@ TEST(CarriedMesh, DoesNotCrossAnObstacle) {
             0U);
 }
 
+TEST(CarriedMesh, LeavesCrossingsAsTheyWereModelled) {
+  // A fin through the sheet's upper side, as of a badge that is stuck through cloth.
+  const Mesh coarse = shapes::rectangle(1, 1, 10, 10);
+  Mesh fin = shapes::rectangle(0.2, 0.1, 2, 2);
+  for (Vec3& x : fin.positions) x = Vec3(0.41 + x.x(), 0.52, x.y());
+  const Mesh fine = shapes::joined(raised(coarse, 0.03), fin);
+  ASSERT_FALSE(find_intersections(fine.positions, triangulate(fine).triangles).empty());
+  const Carried carried = CarriedMesh(coarse, fine).points(coarse.positions);
+  EXPECT_EQ(carried.crossings, 0U);
+  EXPECT_EQ(carried.drawn_in, 0U);
+}
+
 TEST(CarriedMesh, RefusesAMeshInAnotherPlace) {
   const Mesh coarse = shapes::rectangle(1, 1, 4, 4);
   try {
