@@ -65,6 +65,7 @@ set(MUSLIN_PUBLIC_HEADERS
     simulation/pin_force.hpp
     simulation/simulated_body.hpp
     simulation/simulation.hpp
+    simulation/untangled.hpp
     solver/solver.hpp
     topology/topology.hpp
     version.hpp)

@@ -55,7 +55,8 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
   if (options.resume && is_run(options.directory) && !list_checkpoints(options.directory).empty())
     changes_since(options.directory, *model);
   const bool tangled = options.allow_tangled || (options.resume && is_tangled_run(options.directory));
-  Simulation simulation(model, {.allow_tangled = tangled});
+  const bool resumes = options.resume && !list_checkpoints(options.directory).empty();
+  Simulation simulation(model, {.allow_tangled = tangled, .resumes = resumes}, building);
   RunWriter writer(options.directory, simulation, total, options.resume,
                    {options.keep_states, options.resume_from});
 
@@ -63,6 +64,7 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
   result.first_frame = simulation.frame();
   result.changes = writer.changes();
   result.warnings = model->warnings;
+  if (simulation.untangled().needed()) result.warnings.push_back(describe(simulation.untangled()));
   const Pace pace(simulation.state().time * scene.time.frame_rate);
   Progress stepping;
   stepping.cancelled = options.cancelled;

@@ -418,6 +418,14 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
     run["bodies"].push_back(entry);
   }
   std::vector<std::string> warnings = model.warnings;
+  const Untangled& repair = simulation.untangled();
+  if (repair.needed()) {
+    warnings.push_back(describe(repair));
+    run["tangled_start"] = {{"crossings", repair.crossings}, {"wrong_side", repair.lost},
+                            {"too_close", repair.close},     {"left", repair.left},
+                            {"depth", repair.depth},         {"moved", repair.moved},
+                            {"steps", repair.steps}};
+  }
   for (std::string& warning : warnings_of(quality)) warnings.push_back(std::move(warning));
   run["warnings"] = warnings;
   if (simulation.options().allow_tangled) run["allow_tangled"] = true;

@@ -27,4 +27,19 @@ struct ContactExemptions {
   }
 };
 
+/// Points that are free of contact with one part of the surface each, such as the part that they have to pass.
+struct FreePoints {
+  std::vector<int> parts;    ///< #P, the part of the surface that a point belongs to
+  std::vector<int> free_of;  ///< #P, the part that a point does not touch; −1: none
+
+  /// True if one of two points is free of the other one's part.
+  bool has(int a, int b) const {
+    const auto free = [&](int p, int q) {
+      const int part = free_of[static_cast<std::size_t>(p)];
+      return part >= 0 && part == parts[static_cast<std::size_t>(q)];
+    };
+    return free(a, b) || free(b, a);
+  }
+};
+
 }  // namespace muslin

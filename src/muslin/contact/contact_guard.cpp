@@ -358,6 +358,13 @@ void ContactGuard::allow_initial_intersections(ConstVectors q) {
   rebuild();
 }
 
+void ContactGuard::leave_free(std::vector<std::array<int, 2>> crossing, FreePoints points) {
+  memory_.tangled = std::move(crossing);
+  candidates_.ignore_pairs(memory_.tangled, model_->exempt);
+  candidates_.ignore_points(std::move(points));
+  rebuild();
+}
+
 void ContactGuard::rebuild() {
   if (memory_.begin.empty()) return;
   candidates_.update(memory_.begin, memory_.end, memory_.margin, edge_);

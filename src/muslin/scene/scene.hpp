@@ -38,10 +38,18 @@ struct MUSLIN_API TimeSettings {
   double step() const { return 1.0 / (frame_rate * steps_per_frame.value_or(1)); }
 };
 
+/// What a run does about surfaces that cross or are closer than their thickness at its start.
+enum class TangledStart {
+  refuse,  ///< it does not start
+  repair,  ///< it pulls them apart first; what still crosses then is left free until it parts
+  ignore,  ///< they are left free until they part
+};
+
 struct ContactSettings {
   bool given = false;              ///< true if the scene has [contact]
   std::optional<double> distance;  ///< d̂ [m]; default: see build_contact.hpp
   double friction = 0.3;           ///< Coulomb's μ of bodies without their own
+  TangledStart tangled = TangledStart::repair;
   Place place;
 };
 

@@ -169,7 +169,10 @@ const schema::Table& contact_table() {
            .means("contact distance: surfaces repel each other where the gap is below it"),
        schema::number("friction", &ContactSettings::friction)
            .range({0, 100, false})
-           .means("Coulomb's coefficient of each body and collider without its own `friction`")});
+           .means("Coulomb's coefficient of each body and collider without its own `friction`"),
+       schema::word("tangled", &ContactSettings::tangled, {"refuse", "repair", "ignore"})
+           .means("a start at which surfaces cross: `\"refuse\"` it · `\"repair\"` it before the first frame · "
+                  "`\"ignore\"`: leave them free of each other until they part")});
   return table;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/simulation/fingerprint.hpp"
 #include "muslin/simulation/simulation_impl.hpp"
@@ -40,7 +41,8 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   // Which triangles cross depends on the surfaces and the option, which may have changed.
   state.contact.tangled.clear();
   if (model.contact) {
-    impl.require_untangled(state.motion.positions);
+    if (impl.tangled_start() == TangledStart::refuse)
+      refuse_crossings(*model.contact, state.motion.positions, {model.scene.file.string()});
     require_fit(state.contact, *model.contact);
   } else {
     state.contact = {};
@@ -52,7 +54,7 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   impl.scratch.forget();
   impl.state = std::move(state);
   impl.wall_ms = 0;
-  if (model.contact && impl.options.allow_tangled)
+  if (model.contact && impl.tangled_start() != TangledStart::refuse)
     impl.scratch.guard(model, impl.state)->allow_initial_intersections(impl.state.motion.positions);
 }
 

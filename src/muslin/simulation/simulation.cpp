@@ -11,6 +11,7 @@
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/simulation/simulation_impl.hpp"
+#include "muslin/simulation/untangle.hpp"
 
 namespace muslin {
 
@@ -23,7 +24,8 @@ std::shared_ptr<const Model> not_null(std::shared_ptr<const Model> model) {
 
 }  // namespace
 
-Simulation::Impl::Impl(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options)
+Simulation::Impl::Impl(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options,
+                       const Progress& progress)
     : model(not_null(std::move(the_model))), options(the_options), loads(model->loads) {
   state.motion.positions = model->rest_positions;
   state.motion.velocities = model->velocities;
@@ -33,8 +35,7 @@ Simulation::Impl::Impl(std::shared_ptr<const Model> the_model, const SimulationO
     if (model->scene.solver.integrator == Integrator::symplectic_euler)
       throw Error(ErrorKind::usage, "symplectic_euler does not support contact",
                   "use implicit_euler, bdf2 or linearly_implicit_euler");
-    require_untangled(state.motion.positions);
-    touch(options.allow_tangled);
+    begin_contact(progress);
     state.counts.smallest_gap = state.contact.smallest_gap;
   }
   measure_energy();
@@ -72,8 +73,14 @@ int Simulation::Impl::choose_level() {
                               1 / time().frame_rate, model->scene.solver.effort_at(state.motion.time));
 }
 
-void Simulation::Impl::require_untangled(const std::vector<Vec3>& positions) const {
-  if (!options.allow_tangled) refuse_crossings(*model->contact, positions, {model->scene.file.string()});
+void Simulation::Impl::begin_contact(const Progress& progress) {
+  const std::vector<Vec3>& x = state.motion.positions;
+  if (options.resumes) return touch(true);
+  if (tangled_start() == TangledStart::refuse)
+    refuse_crossings(*model->contact, x, {model->scene.file.string()});
+  if (tangled_start() == TangledStart::repair)
+    untangled = untangle(*model, terms(), state, scratch, progress);
+  touch(tangled_start() == TangledStart::ignore || untangled.left > 0);
 }
 
 void Simulation::Impl::touch(bool leave_free) {
@@ -185,8 +192,9 @@ void Simulation::Impl::fail(const StepReport& report) const {
                                          : ", soften the material, or look at the pins and forces there"));
 }
 
-Simulation::Simulation(std::shared_ptr<const Model> model, const SimulationOptions& options)
-    : impl_(std::make_unique<Impl>(std::move(model), options)) {}
+Simulation::Simulation(std::shared_ptr<const Model> model, const SimulationOptions& options,
+                       const Progress& progress)
+    : impl_(std::make_unique<Impl>(std::move(model), options, progress)) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
@@ -198,6 +206,7 @@ const State& Simulation::state() const { return impl_->state.motion; }
 int Simulation::frame() const { return impl_->state.frame; }
 int Simulation::steps_done() const { return impl_->state.steps_done; }
 const Diagnostics& Simulation::diagnostics() const { return impl_->state.diagnostics; }
+const Untangled& Simulation::untangled() const { return impl_->untangled; }
 std::size_t Simulation::tangled() const { return impl_->state.contact.tangled.size(); }
 RunCosts Simulation::costs() const { return impl_->scratch.costs(); }
 

@@ -17,20 +17,25 @@
 #include "muslin/simulation/diagnostics.hpp"
 #include "muslin/simulation/pin_force.hpp"
 #include "muslin/simulation/simulated_body.hpp"
+#include "muslin/simulation/untangled.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
 
 struct SimulationOptions {
-  /// Start although surfaces cross; crossing triangles are not in contact until they part.
+  /// Start although surfaces cross, as with the scene's `tangled = "ignore"`.
   bool allow_tangled = false;
+  /// The start is about to be replaced by a checkpoint: it is neither refused nor repaired.
+  bool resumes = false;
 };
 
 class MUSLIN_API Simulation {
  public:
-  /// Errors: input, if surfaces cross at the start and that is not allowed; usage, if the model has contact
-  /// and the integrator is symplectic_euler.
-  explicit Simulation(std::shared_ptr<const Model> model, const SimulationOptions& options = {});
+  /// Pulls surfaces apart that cross at the start, if the scene says so; that reports to `progress`. Errors:
+  /// input, if surfaces cross at the start and the scene refuses that; usage, if the model has contact and the
+  /// integrator is symplectic_euler; interrupted.
+  explicit Simulation(std::shared_ptr<const Model> model, const SimulationOptions& options = {},
+                      const Progress& progress = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -42,6 +47,7 @@ class MUSLIN_API Simulation {
   int frame() const;                       ///< the last finished frame
   int steps_done() const;                  ///< steps of the current frame; 0 unless it was interrupted
   const Diagnostics& diagnostics() const;  ///< of the last finished frame
+  const Untangled& untangled() const;      ///< the repair of the start
   std::size_t tangled() const;             ///< pairs of triangles that still cross after a tangled start
   RunCosts costs() const;
   /// Returns the body or collider of that name. Errors: usage, with the nearest name.

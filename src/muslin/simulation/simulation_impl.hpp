@@ -17,16 +17,22 @@ struct Simulation::Impl {
   std::vector<LoadTerm> loads;  ///< those of the model, then added ones
   RunState state;
   Scratch scratch;
+  Untangled untangled;
   double wall_ms = 0;  ///< spent on the current frame
 
-  Impl(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options);
+  Impl(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options,
+       const Progress& progress);
+
+  TangledStart tangled_start() const {
+    return options.allow_tangled ? TangledStart::ignore : model->scene.contact.tangled;
+  }
 
   const TimeSettings& time() const { return model->scene.time; }
   Terms terms() const { return {model->potentials, loads}; }
   void advance();
   double progress() const;  ///< of the current frame, 0 … 1
-  /// Throws Error(input) if surfaces cross at `positions`, where contact is to begin.
-  void require_untangled(const std::vector<Vec3>& positions) const;
+  /// Refuses, repairs or ignores crossings, as the scene says.
+  void begin_contact(const Progress& progress);
   /// Restarts contact, without memory, at positions where only allowed crossings exist. With `leave_free`,
   /// triangles that cross there are not in contact until they part.
   void touch(bool leave_free);

@@ -29,6 +29,7 @@ std::optional<ContactPart> AffineCollider::contact_part() const {
   ContactPart part;
   part.body.fixed = is_prescribed();
   part.body.self_contact = false;
+  part.body.solid = true;
   part.body.friction = settings.friction;
   part.body.stiffness = std::numeric_limits<double>::infinity();
   if (!is_prescribed()) {

@@ -113,6 +113,7 @@ std::optional<ContactPart> KinematicMesh::contact_part() const {
   ContactPart part;
   part.body.fixed = true;
   part.body.self_contact = false;
+  part.body.solid = true;
   part.body.friction = settings.friction;
   part.body.stiffness = std::numeric_limits<double>::infinity();
   part.add_mesh(mesh, triangulate(mesh), skin);

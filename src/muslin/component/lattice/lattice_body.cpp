@@ -135,6 +135,7 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
   part.body.self_contact = settings.self_contact;
   part.body.friction = settings.friction;
   part.body.radius = sheet ? thickness / 2 : 0;
+  part.body.solid = !sheet;
   const Material& m = settings.material;
   const ElasticModuli moduli = elastic_moduli(
       {m.edge_modulus, m.face_diagonal_modulus, m.body_diagonal_modulus}, own().bracing, m.volume_modulus);

@@ -1,0 +1,62 @@
+#include "muslin/untangle/surface_pieces.hpp"
+
+#include <algorithm>
+
+#include "muslin/core/disjoint_sets.hpp"
+#include "muslin/core/index.hpp"
+
+namespace muslin {
+namespace {
+
+/// True if the two triangles of an edge pass it in opposite directions.
+bool turned_alike(const Vec3i& first, const Vec3i& second, const ContactSurface::Edge& edge) {
+  const auto forward = [&](const Vec3i& t) {
+    for (int i = 0; i < 3; ++i)
+      if (t[i] == edge[0] && t[(i + 1) % 3] == edge[1]) return true;
+    return false;
+  };
+  return forward(first) != forward(second);
+}
+
+}  // namespace
+
+SurfacePieces::SurfacePieces(const ContactSurface& surface, ConstVectors rest)
+    : of_point_(surface.point_count(), -1),
+      of_triangle_(surface.triangles().size(), -1),
+      areas_(surface.point_count(), 0.0) {
+  const std::span<const Vec3i> triangles = surface.triangles();
+  DisjointSets sets(surface.point_count());
+  for (const Vec3i& t : triangles) {
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
+  }
+  std::vector<int> of_root(surface.point_count(), -1);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    int& piece = of_root[at(sets.find(triangles[t][0]))];
+    if (piece < 0) {
+      piece = count();
+      pieces_.emplace_back();
+      pieces_.back().body = surface.body_of(triangles[t][0]);
+      pieces_.back().solid = surface.bodies()[at(pieces_.back().body)].solid;
+    }
+    of_triangle_[t] = piece;
+    pieces_[at(piece)].triangles.push_back(static_cast<int>(t));
+    const Vec3 &a = rest[at(triangles[t][0])], &b = rest[at(triangles[t][1])],
+               &c = rest[at(triangles[t][2])];
+    const double area = (b - a).cross(c - a).norm() / 2;
+    for (int i = 0; i < 3; ++i) areas_[at(triangles[t][i])] += area / 3;
+  }
+  for (int p = 0; p < static_cast<int>(surface.point_count()); ++p) {
+    const int piece = of_root[at(sets.find(p))];
+    of_point_[at(p)] = piece;
+    if (piece >= 0) pieces_[at(piece)].points.push_back(p);
+  }
+  for (int e = 0; e < static_cast<int>(surface.edges().size()); ++e) {
+    const ContactSurface::Edge& edge = surface.edges()[at(e)];
+    const std::span<const int> sides = surface.triangles_at_edge(e);
+    if (sides.size() != 2 || !turned_alike(triangles[at(sides[0])], triangles[at(sides[1])], edge))
+      pieces_[at(of_point(edge[0]))].solid = false;
+  }
+}
+
+}  // namespace muslin
