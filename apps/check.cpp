@@ -1,4 +1,5 @@
 // muslin check FILE
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -32,12 +33,18 @@ void add_check(CLI::App& program) {
               : std::vector<Crossing>();
       print(a->json ? describe_json(model, crossings) : describe_text(model, crossings));
       if (!a->picture.empty()) write_png(a->picture, draw_start(model, crossings));
-      if (!crossings.empty()) {
-        const std::string what = advice(*model.contact, model.rest_positions, crossings);
-        throw Error(ErrorKind::input, {a->file},
-                    fmt::format("surfaces cross at the start in {} places", crossings.size()),
-                    a->picture.empty() ? what + "; --picture FILE.png shows where" : what);
+      if (crossings.empty()) return;
+      const std::string problem = fmt::format("surfaces cross at the start in {} places", crossings.size());
+      const std::string where = a->picture.empty() ? "; --picture FILE.png shows where" : "";
+      const TangledStart tangled = model.scene.contact.tangled;
+      if (tangled == TangledStart::refuse) {
+        throw Error(ErrorKind::input, {a->file}, problem,
+                    advice(*model.contact, model.rest_positions, crossings) + where);
       }
+      const char* then = tangled == TangledStart::repair ? "pulls them apart before its first frame"
+                                                         : "leaves them free of each other until they part";
+      std::fprintf(stderr, "muslin: warning: %s: %s; the run %s%s\n", a->file.c_str(), problem.c_str(), then,
+                   where.c_str());
       return;
     }
     if (!a->picture.empty())

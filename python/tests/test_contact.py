@@ -80,12 +80,14 @@ def test_what_moves_as_it_is_told_stays(draped):
     assert again.model.crossings(again.positions) == []
 
 
-def test_a_start_that_crosses_is_listed_and_refused():
-    scene = muslin.make_scene(drop_tables(height=0.2))
-    model = muslin.build_model(scene)
+def test_a_start_that_crosses_is_listed_and_repaired_or_refused():
+    model = muslin.build_model(muslin.make_scene(drop_tables(height=0.2)))
     assert model.crossings()
+    repaired = muslin.Simulation(model)
+    assert model.crossings(repaired.positions) == []
+    strict = muslin.make_scene({**drop_tables(height=0.2), "contact": {"tangled": "refuse"}})
     with pytest.raises(muslin.InputError, match="cross"):
-        muslin.Simulation(model)
+        muslin.Simulation(strict)
     tangled = muslin.Simulation(model, allow_tangled=True)
     tangled.advance()
     assert tangled.frame == 1
@@ -93,8 +95,8 @@ def test_a_start_that_crosses_is_listed_and_refused():
 
 def test_a_run_may_start_tangled_and_remembers_it(tmp_path):
     scene = muslin.make_scene(drop_tables(height=0.2))
-    with pytest.raises(muslin.InputError, match="cross"):
-        muslin.run(scene, tmp_path / "refused", frames=1)
+    muslin.run(scene, tmp_path / "repaired", frames=1)
+    assert json.loads((tmp_path / "repaired/run.json").read_text())["tangled_start"]["left"] == 0
     muslin.run(scene, tmp_path / "run", frames=1, allow_tangled=True)
     assert json.loads((tmp_path / "run/run.json").read_text())["allow_tangled"] is True
     assert muslin.Run(tmp_path / "run").diagnostics["min_distance"][0] < 0

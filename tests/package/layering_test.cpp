@@ -12,11 +12,11 @@
 namespace {
 
 const std::map<std::string, int> ranks = {
-    {"core", 0},       {"topology", 1},   {"schema", 1},  {"geometry", 2}, {"potential", 2}, {"field", 3},
-    {"io", 3},         {"lattice", 4},    {"shell", 4},   {"material", 5}, {"energy", 5},    {"force", 5},
-    {"constraint", 5}, {"contact", 5},    {"surface", 5}, {"solver", 5},   {"component", 6}, {"post", 6}, {"untangle", 6},
-    {"scene", 7},      {"simulation", 8}, {"fit", 9},     {"cache", 9},    {"render", 9},    {"picture", 10},
-    {"view", 10},      {"report", 11},
+    {"core", 0},       {"topology", 1}, {"schema", 1},     {"geometry", 2}, {"potential", 2}, {"field", 3},
+    {"io", 3},         {"lattice", 4},  {"shell", 4},      {"material", 5}, {"energy", 5},    {"force", 5},
+    {"constraint", 5}, {"contact", 5},  {"surface", 5},    {"solver", 5},   {"component", 6}, {"post", 6},
+    {"untangle", 6},   {"scene", 7},    {"simulation", 8}, {"fit", 9},      {"cache", 9},     {"render", 9},
+    {"picture", 10},   {"view", 10},    {"report", 11},
 };
 
 bool allowed(const std::string& from, const std::string& to) {

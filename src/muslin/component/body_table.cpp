@@ -24,6 +24,7 @@ std::vector<schema::Key> placed_keys() {
       schema::truth("self_contact", &BodySettings::self_contact)
           .means("`false` excludes contact of the body with itself"),
       friction_key(&BodySettings::friction),
+      layer_key(&BodySettings::layer),
       schema::colour("colour", &BodySettings::colour)
           .may_change_on_resume()
           .otherwise("one of a palette")

@@ -44,6 +44,18 @@ schema::Declaration friction_key(std::optional<double> S::* member) {
       .means("Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean");
 }
 
+/// The key `layer`.
+template <class S>
+schema::Declaration layer_key(std::optional<int> S::* member) {
+  return schema::whole_number("layer", member)
+      .range({0, 1000, false})
+      .otherwise("none")
+      .means(
+          "order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a "
+          "body "
+          "belongs outside those of lower layers");
+}
+
 /// `keyframes` of a motion.
 schema::Declaration motion_key();
 

@@ -157,12 +157,12 @@ bool ContactCandidates::is_free(PairKind kind, int first, int second) const {
          std::binary_search(free_.begin(), free_.end(), ContactPair::key_of(kind, first, second));
 }
 
-bool ContactCandidates::has_free_point(PairKind kind, const std::array<int, 4>& points) const {
-  if (free_points_.free_of.empty()) return false;
+bool ContactCandidates::has_free_points(PairKind kind, const std::array<int, 4>& points) const {
+  if (free_parts_.empty()) return false;
   const auto size = static_cast<std::size_t>(first_feature_size(kind));
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = size; j < 4; ++j)
-      if (free_points_.has(points[i], points[j])) return true;
+      if (free_parts_.has(points[i], points[j])) return true;
   return false;
 }
 
@@ -190,7 +190,7 @@ void ContactCandidates::add_near(PairKind kind, std::span<const Pair> found, Nea
   culling_.find_near(kind, points, contact_distance_, distances.data());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const auto [first, second] = found[i];
-    if (distances[i] < 0 || is_free(kind, first, second) || has_free_point(kind, points[i])) continue;
+    if (distances[i] < 0 || is_free(kind, first, second) || has_free_points(kind, points[i])) continue;
     out.pairs.push_back(make_pair(kind, first, second));
     out.distances.push_back(distances[i]);
   }

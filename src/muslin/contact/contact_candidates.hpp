@@ -62,8 +62,8 @@ class ContactCandidates {
   /// contact, from the next update on, instead of those of the last call; by default none are excluded.
   void ignore_pairs(std::span<const std::array<int, 2>> triangles, const ContactExemptions& joints);
 
-  /// Excludes pairs of features with a point that is free of the other one's part, from the next update on.
-  void ignore_points(FreePoints points) { free_points_ = std::move(points); }
+  /// Excludes pairs of features with points that are free of each other, from the next update on.
+  void ignore_parts(FreeParts parts) { free_parts_ = std::move(parts); }
 
   /// Finds the pairs that may come within range while all points move linearly in time from `begin` to `end`
   /// (#P by 3, [m]), each within ± `margin` [m] along every axis. If no displacement exceeds `long_way` [m],
@@ -90,7 +90,7 @@ class ContactCandidates {
   void limit_by_rest(ContactPair& pair) const;
   ContactPair make_pair(PairKind kind, int first, int second) const;
   bool is_free(PairKind kind, int first, int second) const;
-  bool has_free_point(PairKind kind, const std::array<int, 4>& points) const;
+  bool has_free_points(PairKind kind, const std::array<int, 4>& points) const;
   void free_edges(int e, int f);
   struct Near {
     std::vector<ContactPair> pairs;
@@ -118,7 +118,7 @@ class ContactCandidates {
   };
   std::vector<RestDistance> rest_distances_;  // by key, of the close pairs alone
   std::vector<std::uint64_t> free_;           // ascending keys
-  FreePoints free_points_;                    // empty: none
+  FreeParts free_parts_;                      // empty: none
 };
 
 }  // namespace muslin

@@ -27,18 +27,24 @@ struct ContactExemptions {
   }
 };
 
-/// Points that are free of contact with one part of the surface each, such as the part that they have to pass.
-struct FreePoints {
-  std::vector<int> parts;    ///< #P, the part of the surface that a point belongs to
-  std::vector<int> free_of;  ///< #P, the part that a point does not touch; −1: none
+/// Freedom of contact by parts of the surface.
+struct FreeParts {
+  std::vector<int> parts;  ///< #P, the part of the surface that a point belongs to
+  std::vector<std::array<int, 2>>
+      pairs;                 ///< parts that do not touch each other, smaller number first; ascending
+  std::vector<int> free_of;  ///< #P, a part that a point does not touch; −1: none
 
-  /// True if one of two points is free of the other one's part.
+  bool empty() const { return free_of.empty() && pairs.empty(); }
+  /// True if two points are free of each other.
   bool has(int a, int b) const {
-    const auto free = [&](int p, int q) {
-      const int part = free_of[static_cast<std::size_t>(p)];
-      return part >= 0 && part == parts[static_cast<std::size_t>(q)];
+    const int of_a = parts[static_cast<std::size_t>(a)], of_b = parts[static_cast<std::size_t>(b)];
+    const auto free = [&](int p, int part) {
+      const int other = free_of[static_cast<std::size_t>(p)];
+      return other >= 0 && other == part;
     };
-    return free(a, b) || free(b, a);
+    return free(a, of_b) || free(b, of_a) ||
+           std::binary_search(pairs.begin(), pairs.end(),
+                              std::array{std::min(of_a, of_b), std::max(of_a, of_b)});
   }
 };
 

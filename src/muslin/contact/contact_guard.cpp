@@ -358,10 +358,10 @@ void ContactGuard::allow_initial_intersections(ConstVectors q) {
   rebuild();
 }
 
-void ContactGuard::leave_free(std::vector<std::array<int, 2>> crossing, FreePoints points) {
+void ContactGuard::leave_free(std::vector<std::array<int, 2>> crossing, FreeParts parts) {
   memory_.tangled = std::move(crossing);
   candidates_.ignore_pairs(memory_.tangled, model_->exempt);
-  candidates_.ignore_points(std::move(points));
+  candidates_.ignore_parts(std::move(parts));
   rebuild();
 }
 

@@ -49,9 +49,9 @@ class ContactGuard : public StepGuard {
   /// Excludes contact between the features of triangles that cross at q, until these triangles part. While
   /// some pairs cross, neighbouring triangles may begin to cross; once no pair crosses, none can cross again.
   void allow_initial_intersections(ConstVectors q);
-  /// Excludes contact between the features of these pairs of triangles, as long as they cross, and of points
-  /// with the parts that they are free of, until the next call.
-  void leave_free(std::vector<std::array<int, 2>> crossing, FreePoints points);
+  /// Excludes contact between the features of these pairs of triangles, as long as they cross, and between
+  /// points that are free of each other, until the next call.
+  void leave_free(std::vector<std::array<int, 2>> crossing, FreeParts parts);
   /// Returns the number of excluded pairs of triangles that still cross.
   std::size_t tangled() const { return memory_.tangled.size(); }
 

@@ -22,9 +22,6 @@ struct ContactBody {
   double radius = 0;         ///< half the thickness, or the radius of a sphere or capsule [m]
   bool self_contact = true;  ///< true if it touches itself
   bool fixed = false;        ///< a collider: two fixed bodies do not touch each other
-  bool solid = false;        ///< true if closed surfaces of it have an inside, where nothing else belongs
-  /// The order of bodies outward; none: unknown. A body of a higher layer belongs outside one of a lower.
-  std::optional<int> layer = std::nullopt;
   /// Stiffness of a contact with this body [N/m]; a pair uses the smaller one. For cloth about 0.15 × Young's
   /// modulus × thickness of the membrane; infinite if the other body's stiffness is to be used.
   double stiffness = 150;
@@ -36,6 +33,9 @@ struct ContactBody {
   std::optional<double> friction = std::nullopt;
   /// Above 0: the stiffness is 4 m/dt², which stops this mass within a step; `stiffness` is ignored [kg].
   double mass = 0;
+  bool solid = false;  ///< true if closed surfaces of it have an inside, where nothing else belongs
+  /// The order of bodies outward; none: unknown. A body of a higher layer belongs outside one of a lower.
+  std::optional<int> layer = std::nullopt;
 };
 
 /// An impenetrable half-space: gap = normal·(x − x_point). The plane moves with its point.

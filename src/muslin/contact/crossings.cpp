@@ -161,10 +161,11 @@ void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& pl
   for (std::size_t i = 0; i < std::min(found.size(), listed); ++i)
     list += (i > 0 ? "; " : "") + describe(model, found[i]);
   if (found.size() > listed) list += fmt::format("; and {} more", found.size() - listed);
-  throw Error(ErrorKind::input, place, fmt::format("surfaces cross at the start: {}", list),
-              advice(model, q, found) +
-                  " (`muslin check` lists and draws them), or allow tangled surfaces (--allow-tangled), "
-                  "which leaves these free until they part");
+  throw Error(
+      ErrorKind::input, place, fmt::format("surfaces cross at the start: {}", list),
+      advice(model, q, found) +
+          " (`muslin check` lists and draws them), or let the run pull them apart (`contact.tangled = "
+          "\"repair\"`) or leave them free until they part (`\"ignore\"`)");
 }
 
 }  // namespace muslin

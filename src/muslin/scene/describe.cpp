@@ -11,6 +11,7 @@
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/scene/names.hpp"
+#include "muslin/untangle/tangle.hpp"
 
 namespace muslin {
 namespace {
@@ -117,6 +118,10 @@ std::string steps_text(const TimeSettings& time) {
   return fmt::format("{} steps of {:.4g} s", steps, time.step());
 }
 
+std::vector<WrongSide> wrong_sides_of(const Model& model) {
+  return model.contact ? find_wrong_sides(model.contact, model.rest_positions) : std::vector<WrongSide>();
+}
+
 std::string solver_text(const SolverSettings& solver) {
   const std::string& name = name_of(integrator_names(), solver.integrator);
   if (solver.integrator != Integrator::implicit_euler && solver.integrator != Integrator::bdf2) return name;
@@ -148,6 +153,14 @@ std::string describe_json(const Model& model, std::span<const Crossing> crossing
   json["colliders"] = list_of(model, true);
   json["contact"] = contact_json(model);
   json["crossings"] = crossings_json(model, crossings);
+  json["wrong_sides"] = Json::array();
+  for (const WrongSide& side : wrong_sides_of(model)) {
+    const auto name = [&](int body) { return model.contact->names[static_cast<std::size_t>(body)]; };
+    json["wrong_sides"].push_back({{"body", name(side.body)},
+                                   {"of", name(side.other)},
+                                   {"points", side.points},
+                                   {"depth", side.depth}});
+  }
   json["pins"] = Json::array();
   for (const Pin& pin : model.pins) {
     json["pins"].push_back({{"name", pin.name}, {"vertices", pin.vertices.size()}});
@@ -199,6 +212,7 @@ std::string describe_text(const Model& model, std::span<const Crossing> crossing
     text += "  " + describe(*model.contact, crossings[i]) + "\n";
   if (crossings.size() > max_crossings)
     text += fmt::format("  and {} more\n", crossings.size() - max_crossings);
+  for (const WrongSide& side : wrong_sides_of(model)) text += describe(*model.contact, side) + "\n";
   return text;
 }
 

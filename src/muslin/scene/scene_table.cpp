@@ -171,8 +171,9 @@ const schema::Table& contact_table() {
            .range({0, 100, false})
            .means("Coulomb's coefficient of each body and collider without its own `friction`"),
        schema::word("tangled", &ContactSettings::tangled, {"refuse", "repair", "ignore"})
-           .means("a start at which surfaces cross: `\"refuse\"` it · `\"repair\"` it before the first frame · "
-                  "`\"ignore\"`: leave them free of each other until they part")});
+           .means(
+               "a start at which surfaces cross: `\"refuse\"` it · `\"repair\"` it before the first frame · "
+               "`\"ignore\"`: leave them free of each other until they part")});
   return table;
 }
 

@@ -32,8 +32,8 @@ struct SimulationOptions {
 class MUSLIN_API Simulation {
  public:
   /// Pulls surfaces apart that cross at the start, if the scene says so; that reports to `progress`. Errors:
-  /// input, if surfaces cross at the start and the scene refuses that; usage, if the model has contact and the
-  /// integrator is symplectic_euler; interrupted.
+  /// input, if surfaces cross at the start and the scene refuses that; usage, if the model has contact and
+  /// the integrator is symplectic_euler; interrupted.
   explicit Simulation(std::shared_ptr<const Model> model, const SimulationOptions& options = {},
                       const Progress& progress = {});
   ~Simulation();

@@ -17,10 +17,14 @@
 namespace muslin {
 namespace {
 
-constexpr double step_length = 1.0 / 240;  // [s]
-constexpr int most_steps = 120;            // half a second
-/// A repair ends if this many steps in a row do not make the tangle smaller.
-constexpr int patience = 30;
+constexpr double step_length = 1.0 / 60;  // [s]
+constexpr int most_steps = 240;           // four seconds
+/// A repair ends if this many steps in a row do not make the tangle smaller, or shallower by this factor.
+constexpr int patience = 30, stuck_after = 3;
+constexpr double shallower = 0.98;
+/// The same if nothing crosses and only gaps are small: contact can go on from there.
+constexpr int patience_if_close = 4;
+constexpr double accuracy = 0.05;  // of a step, over the separations
 constexpr std::size_t listed = 4;
 
 class Repair {
@@ -28,8 +32,6 @@ class Repair {
   Repair(const Model& model, const Terms& terms, RunState& state, Scratch& scratch)
       : model_(model), terms_(terms), state_(state), scratch_(scratch), finder_(model.contact) {
     scratch.prepare(model);
-    for (std::size_t p = 0; p < model.contact->surface->point_count(); ++p)
-      parts_.push_back(finder_.pieces().of_point(static_cast<int>(p)));
   }
 
   Untangled run(const Progress& progress) {
@@ -37,20 +39,24 @@ class Repair {
     const std::vector<Vec3> begin = state_.motion.positions;
     Tangle tangle = find();
     report.crossings = tangle.crossing.size();
-    report.lost = tangle.lost_count;
+    report.lost = tangle.wrong.size();
     report.close = tangle.close_count;
     report.depth = tangle.depth;
     std::size_t least = std::numeric_limits<std::size_t>::max();
-    for (int since = 0; !tangle.empty() && report.steps < most_steps && since < patience; ++since) {
-      if (tangle.size() < least) {
-        least = tangle.size();
-        since = 0;
-      }
+    double least_depth = std::numeric_limits<double>::infinity();
+    const auto patience_for = [](const Tangle& t) {
+      return t.crossing.empty() && t.wrong.empty() ? patience_if_close : patience;
+    };
+    for (int since = 0; !tangle.empty() && report.steps < most_steps && since < patience_for(tangle);
+         ++since) {
+      if (tangle.size() < least || tangle.depth < shallower * least_depth) since = 0;
+      least = std::min(least, tangle.size());
+      least_depth = std::min(least_depth, tangle.depth);
       const std::string stage = fmt::format("untangling, {} places left", tangle.size());
       progress.at(static_cast<double>(report.steps) / most_steps, stage);
       if (!step(tangle)) break;
       ++report.steps;
-      tangle = find();
+      tangle = find(since >= stuck_after);
     }
     report.left = tangle.crossing.size();
     name_places(report);
@@ -60,7 +66,7 @@ class Repair {
   }
 
  private:
-  Tangle find() { return finder_.find(state_.motion.positions, step_length); }
+  Tangle find(bool stuck = false) { return finder_.find(state_.motion.positions, step_length, stuck); }
 
   void name_places(Untangled& report) const {
     if (report.left == 0) return;
@@ -95,40 +101,20 @@ class Repair {
       prescribed.hold(now, scratch_.fixed, scratch_.targets);
 
     ContactGuard* guard = scratch_.guard(model_, state_);
-    guard->leave_free(tangle.crossing, {parts_, tangle.lost});
-    const std::vector<double> accelerations = accelerations_of(separation);
-    StepProblem problem{scratch_.masses,
-                        std::move(potentials),
-                        scratch_.fixed,
-                        scratch_.targets,
-                        guard,
-                        model_.rest_positions,
-                        scratch_.parts.of_vertex,
-                        accelerations,
-                        scratch_.parts.edges};
+    guard->leave_free(tangle.crossing, tangle.free);
+    // Steps are solved to a share of the separations, whatever the stiffness.
+    const std::vector<double> accelerations(
+        scratch_.parts.count(), separation.mean_missing(motion.positions) / (step_length * step_length));
+    StepProblem problem{
+        scratch_.masses,       std::move(potentials),    scratch_.fixed, scratch_.targets,    guard,
+        model_.rest_positions, scratch_.parts.of_vertex, accelerations,  scratch_.parts.edges};
     SolverSettings settings = model_.scene.solver;
     settings.integrator = Integrator::implicit_euler;
-    settings.effort = Effort::draft;
-    settings.tolerance.reset();
+    settings.tolerance = accuracy;
     const StepReport report = stepper_.step(settings, context, problem, motion);
     std::fill(motion.velocities.begin(), motion.velocities.end(), Vec3::Zero());
     motion.time = now;
     return report.made();
-  }
-
-  /// Returns the root mean square of the accelerations by separations, by part [m/s²].
-  std::vector<double> accelerations_of(const Potential& separation) const {
-    std::vector<Vec3> force(state_.motion.positions.size(), Vec3::Zero());
-    separation.add_gradient(state_.motion.positions, force);
-    std::vector<double> mass(scratch_.parts.count(), 0.0), square = mass;
-    for (std::size_t v = 0; v < force.size(); ++v) {
-      if (!(model_.masses[v] > 0)) continue;
-      const std::size_t part = at(scratch_.parts.of_vertex[v]);
-      mass[part] += model_.masses[v];
-      square[part] += force[v].squaredNorm() / model_.masses[v];
-    }
-    for (std::size_t p = 0; p < mass.size(); ++p) square[p] = mass[p] > 0 ? std::sqrt(square[p] / mass[p]) : 0;
-    return square;
   }
 
   const Model& model_;
@@ -137,7 +123,6 @@ class Repair {
   Scratch& scratch_;
   TangleFinder finder_;
   Stepper stepper_;
-  std::vector<int> parts_;  // #P, pieces
 };
 
 }  // namespace

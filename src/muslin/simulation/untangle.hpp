@@ -10,8 +10,8 @@
 namespace muslin {
 
 /// Moves `state` without its time: each step starts at rest, so that the bodies follow their elastic energy,
-/// contact and the separations of the tangle (untangle/tangle.hpp) alone; pins and colliders stay where they are
-/// at the start. Ends when nothing crosses, or when steps no longer help. Errors: interrupted.
+/// contact and the separations of the tangle (untangle/tangle.hpp) alone; pins and colliders stay where they
+/// are at the start. Ends when nothing crosses, or when steps no longer help. Errors: interrupted.
 Untangled untangle(const Model& model, const Terms& terms, RunState& state, Scratch& scratch,
                    const Progress& progress);
 

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "muslin/core/disjoint_sets.hpp"
@@ -20,8 +22,6 @@ constexpr int rings = 2;
 
 /// Share of the contours' corners by which a region is on one side.
 constexpr double clear_share = 0.6;
-/// Surfaces whose normals have a larger cosine are layers.
-constexpr double layered = 0.5;
 
 using Pair = std::pair<int, int>;  // a piece, and the piece that cuts it
 
@@ -29,10 +29,10 @@ using Pair = std::pair<int, int>;  // a piece, and the piece that cuts it
 struct Regions {
   struct Region {
     std::vector<int> points;
-    double area = 0;               // [m²]
-    double side = 0;               // > 0: before the cutting surface, by its normals at the contours
-    std::vector<int> piercings;    // of edges on its border
-    std::vector<int> neighbours;   // regions
+    double area = 0;              // [m²]
+    double side = 0;              // > 0: before the cutting surface, by its normals at the contours
+    std::vector<int> piercings;   // of edges on its border
+    std::vector<int> neighbours;  // regions
     bool wrong = false;
   };
   std::vector<Region> all;
@@ -58,8 +58,12 @@ struct Regions {
 class CrossedRegions {
  public:
   CrossedRegions(const ContactSurface& surface, const SurfacePieces& pieces, ConstVectors x,
-                 std::span<const Piercing> piercings, std::map<Pair, int>& decided)
-      : surface_(surface), pieces_(pieces), x_(x), piercings_(piercings), decided_(decided),
+                 std::span<const Piercing> piercings, Layerings& known)
+      : surface_(surface),
+        pieces_(pieces),
+        x_(x),
+        piercings_(piercings),
+        known_(known),
         wrong_(surface.point_count(), 0) {
     for (std::size_t i = 0; i < piercings.size(); ++i) {
       const int cut = piece_of_edge(piercings[i].edge), by = pieces.of_triangle(piercings[i].triangle);
@@ -69,9 +73,10 @@ class CrossedRegions {
   }
 
   std::vector<LostPoint> find() {
+    for (const auto& [pair, sides] : known_) decided_.insert(pair);
     for (const auto& [pair, list] : by_pair_) {
       Regions regions = divide(pair, list);
-      if (pair.first != pair.second && are_layers(list)) split_mixed(regions);
+      if (pair.first != pair.second && layering(pair).layers) split_mixed(regions);
       regions_.emplace(pair, std::move(regions));
     }
     for (auto& [pair, regions] : regions_) {
@@ -142,17 +147,8 @@ class CrossedRegions {
     for (const int t : surface_.triangles_at_edge(edge)) sum += normal(t);
     return sum.normalized();
   }
-  bool are_layers(std::span<const int> list) const {
-    double sum = 0;
-    for (const int i : list) {
-      const Piercing& p = piercings_[at(i)];
-      sum += std::abs(normal_of_edge(p.edge).dot(normal(p.triangle).normalized()));
-    }
-    return sum > layered * static_cast<double>(list.size());
-  }
-
-  /// Splits regions of a layer that lie on both sides, since the other layer ends: points belong to the side of
-  /// the nearest corner of a contour, in edges.
+  /// Splits regions of a layer that lie on both sides, since the other layer ends: points belong to the side
+  /// of the nearest corner of a contour, in edges.
   void split_mixed(Regions& regions) const {
     std::vector<Regions::Region> all;
     for (Regions::Region& region : regions.all) {
@@ -223,35 +219,56 @@ class CrossedRegions {
 
   /// Marks the regions of two pieces that cut each other, such that no place is wrong for both.
   void mark_between(const Pair& pair) {
-    static const std::vector<int> none;
-    const Pair back = {pair.second, pair.first};
-    const auto list = [&](const Pair& p) -> const std::vector<int>& {
-      const auto found = by_pair_.find(p);
-      return found == by_pair_.end() ? none : found->second;
-    };
-    int alike = 0;  // > 0: both surfaces are turned to one side
-    for (const Pair& p : {pair, back}) {
-      for (const int i : list(p))
-        alike += normal_of_edge(piercings_[at(i)].edge).dot(normal(piercings_[at(i)].triangle)) > 0 ? 1 : -1;
-    }
+    const Pair ordered = std::minmax(pair.first, pair.second), back = {ordered.second, ordered.first};
     Regions empty;
-    Regions& first = regions_.contains(pair) ? regions_.at(pair) : empty;
+    Regions& first = regions_.contains(ordered) ? regions_.at(ordered) : empty;
     Regions& second = regions_.contains(back) ? regions_.at(back) : empty;
+    Layering& sides = known_.at(ordered);
+    if (!decided_.contains(ordered) && !by_layer(ordered) &&
+        first.area_before(sides.wrong_of_first) + second.area_before(sides.wrong_of_second) >
+            first.area_before(-sides.wrong_of_first) + second.area_before(-sides.wrong_of_second)) {
+      sides.wrong_of_first = -sides.wrong_of_first;
+      sides.wrong_of_second = -sides.wrong_of_second;
+    }
+    first.mark(sides.wrong_of_first);
+    second.mark(sides.wrong_of_second);
+  }
+
+  /// Returns the wrong side of the first of two pieces by the layers of their bodies; 0: they do not tell.
+  int by_layer(const Pair& pair) const {
     const auto layer = [&](int piece) { return surface_.bodies()[at(pieces_.body(piece))].layer; };
     const std::optional<int> a = layer(pair.first), b = layer(pair.second);
-    if (a && b && *a != *b) {
-      const int wrong = *a > *b ? -1 : 1;
-      first.mark(wrong);
-      second.mark(-wrong);
-      return;
+    return !a || !b || *a == *b ? 0 : *a > *b ? -1 : 1;
+  }
+
+  /// Returns how two pieces lie to each other; which side is wrong may be turned by mark_between.
+  const Layering& layering(const Pair& pair) {
+    const Pair ordered = std::minmax(pair.first, pair.second), back = {ordered.second, ordered.first};
+    const auto found = known_.find(ordered);
+    if (found != known_.end()) return found->second;
+    double along = 0;  // sum of cosines
+    double aligned = 0, count = 0;
+    for (const Pair& p : {ordered, back}) {
+      const auto list = by_pair_.find(p);
+      if (list == by_pair_.end()) continue;
+      for (const int i : list->second) {
+        const double cosine =
+            normal_of_edge(piercings_[at(i)].edge).dot(normal(piercings_[at(i)].triangle).normalized());
+        along += cosine;
+        aligned += std::abs(cosine);
+        ++count;
+      }
     }
-    const int turn = alike >= 0 ? -1 : 1;
-    const auto [decision, is_new] = decided_.try_emplace(std::minmax(pair.first, pair.second), 1);
-    if (is_new && first.area_before(1) + second.area_before(turn) >
-                      first.area_before(-1) + second.area_before(-turn))
-      decision->second = -1;
-    first.mark(decision->second);
-    second.mark(turn * decision->second);
+    Layering sides;
+    sides.layers = aligned > layered * count;
+    const int wrong = by_layer(ordered);
+    if (wrong != 0) {
+      sides.wrong_of_first = wrong;
+      sides.wrong_of_second = -wrong;
+    } else {
+      sides.wrong_of_second = along >= 0 ? -1 : 1;
+    }
+    return known_.emplace(ordered, sides).first->second;
   }
 
   /// Returns the triangles of piece `by` near the contours of a region and behind them.
@@ -308,20 +325,21 @@ class CrossedRegions {
     for (const int t : around) triangles.push_back(surface_.triangles()[at(t)]);
     const ClosestPointQuery nearest(x_, triangles);
     const double side = region.side > 0 ? 1 : -1;
-    const std::vector<LostPoint> found = parallel_collect<LostPoint>(
-        region.points.size(), region_grain, [&](std::size_t begin, std::size_t end, std::vector<LostPoint>& out) {
-          for (std::size_t i = begin; i < end; ++i) {
-            const int p = region.points[i];
-            const ClosestPoint near = nearest(x_[at(p)]);
-            const int t = around[at(near.triangle)];
-            const Vec3 n = normal(t);
-            if (!(n.norm() > 0)) continue;
-            const Vec3 back = -side * n.normalized();
-            const double depth = back.dot(near.point - x_[at(p)]);
-            if (depth < 0 || is_on_border(t, near.barycentric)) continue;
-            out.push_back({p, by, t, near.barycentric, back, depth});
-          }
-        });
+    const std::vector<LostPoint> found =
+        parallel_collect<LostPoint>(region.points.size(), region_grain,
+                                    [&](std::size_t begin, std::size_t end, std::vector<LostPoint>& out) {
+                                      for (std::size_t i = begin; i < end; ++i) {
+                                        const int p = region.points[i];
+                                        const ClosestPoint near = nearest(x_[at(p)]);
+                                        const int t = around[at(near.triangle)];
+                                        const Vec3 n = normal(t);
+                                        if (!(n.norm() > 0)) continue;
+                                        const Vec3 back = -side * n.normalized();
+                                        const double depth = back.dot(near.point - x_[at(p)]);
+                                        if (depth < 0 || is_on_border(t, near.barycentric)) continue;
+                                        out.push_back({p, by, t, near.barycentric, back, depth});
+                                      }
+                                    });
     lost.insert(lost.end(), found.begin(), found.end());
   }
 
@@ -329,7 +347,8 @@ class CrossedRegions {
   const SurfacePieces& pieces_;
   ConstVectors x_;
   std::span<const Piercing> piercings_;
-  std::map<Pair, int>& decided_;
+  Layerings& known_;
+  std::set<Pair> decided_;                    // before this call
   std::map<Pair, std::vector<int>> by_pair_;  // piercings
   std::map<Pair, Regions> regions_;
   std::vector<std::uint8_t> wrong_;  // #P
@@ -339,8 +358,8 @@ class CrossedRegions {
 
 std::vector<LostPoint> find_crossed_regions(const ContactSurface& surface, const SurfacePieces& pieces,
                                             ConstVectors x, std::span<const Piercing> piercings,
-                                            std::map<std::pair<int, int>, int>& decided) {
-  return CrossedRegions(surface, pieces, x, piercings, decided).find();
+                                            Layerings& known) {
+  return CrossedRegions(surface, pieces, x, piercings, known).find();
 }
 
 }  // namespace muslin

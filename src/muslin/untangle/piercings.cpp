@@ -19,9 +19,7 @@ std::optional<Piercing> pierce(const ContactSurface& surface, ConstVectors x, in
   const int side = orientation(p, q, a, b);
   if (side == 0 || orientation(p, q, b, c) != side || orientation(p, q, c, a) != side) return std::nullopt;
   // Signed volumes, whose shares are the weights.
-  const auto volume = [&](const Vec3& u, const Vec3& v) {
-    return std::abs((q - p).cross(u - p).dot(v - p));
-  };
+  const auto volume = [&](const Vec3& u, const Vec3& v) { return std::abs((q - p).cross(u - p).dot(v - p)); };
   const Vec3 normal = (b - a).cross(c - a);
   const double above = std::abs(normal.dot(p - a)), below = std::abs(normal.dot(q - a));
   Vec3 weights(volume(b, c), volume(c, a), volume(a, b));

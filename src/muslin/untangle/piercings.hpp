@@ -12,8 +12,8 @@
 namespace muslin {
 
 struct Piercing {
-  int edge = 0, triangle = 0;  ///< of the surface
-  double along = 0;            ///< the point is at (1 − along) a + along b of the edge a b
+  int edge = 0, triangle = 0;       ///< of the surface
+  double along = 0;                 ///< the point is at (1 − along) a + along b of the edge a b
   Vec3 barycentric = Vec3::Zero();  ///< weights of the triangle's corners
   Vec3 at = Vec3::Zero();           ///< the point [m]
 };

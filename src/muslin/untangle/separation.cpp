@@ -29,6 +29,18 @@ double SeparationPotential::value(ConstVectors q) const {
   return sum;
 }
 
+double SeparationPotential::mean_missing(ConstVectors q) const {
+  std::vector<Vec3> x(map_->point_count());
+  map_->apply(q, x);
+  double sum = 0, count = 0;
+  for (const Separation& s : separations_) {
+    const double m = missing(s, x);
+    sum += m;
+    count += m > 0 ? 1 : 0;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 void SeparationPotential::add_gradient(ConstVectors q, Vectors g) const {
   std::vector<Vec3> x(map_->point_count()), force(map_->point_count(), Vec3::Zero());
   map_->apply(q, x);

@@ -13,13 +13,13 @@
 
 namespace muslin {
 
-/// The place Σ wᵢ xᵢ of one surface over another is to be at least `gap` before it along `normal`.
+/// The place Σ wᵢ xᵢ, relative to another surface or to the origin, is to be at least `gap` along `normal`.
 struct Separation {
   std::array<int, 4> points = {-1, -1, -1, -1};  ///< of the surface; −1: none
-  std::array<double, 4> weights{};               ///< w, of sum 0
-  Vec3 normal = Vec3::Zero();                    ///< of length 1
-  double gap = 0;                                ///< [m]
-  double stiffness = 0;                          ///< [N/m]
+  std::array<double, 4> weights{};  ///< w, of sum 0 between two surfaces, of sum 1 relative to the origin
+  Vec3 normal = Vec3::Zero();       ///< of length 1
+  double gap = 0;                   ///< [m]
+  double stiffness = 0;             ///< [N/m]
 };
 
 /// W(q) = Σ ½ k max(0, gap − n · Σ wᵢ xᵢ)², x = J q.
@@ -32,6 +32,9 @@ class SeparationPotential : public Potential {
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
   void linearize(ConstVectors q, HessianSink& into, std::size_t first) const override;
+
+  /// Returns by how much the separations that are missing fall short, in the mean [m]; 0 if none is.
+  double mean_missing(ConstVectors q) const;
 
  private:
   /// Returns by how much a separation falls short at points x [m].

@@ -14,9 +14,9 @@ namespace muslin {
 namespace {
 
 constexpr std::size_t grain = 64;
-constexpr double inside = 0.5;            // winding number
-constexpr double contained_share = 0.1;   // depth over size of a piece that belongs inside
-constexpr double on_surface = 1e-9;       // distance over size below which the direction is the normal
+constexpr double inside = 0.5;           // winding number
+constexpr double contained_share = 0.1;  // depth over size of a piece that belongs inside
+constexpr double on_surface = 1e-9;      // distance over size below which the direction is the normal
 
 using Box = Eigen::AlignedBox3d;
 
@@ -29,8 +29,12 @@ Box box_of(std::span<const int> points, ConstVectors x) {
 class Solid {
  public:
   Solid(const ContactSurface& surface, std::span<const int> numbers, ConstVectors x)
-      : surface_(surface), numbers_(numbers), x_(x), triangles_(triangles_of(surface, numbers)),
-        winding_(x, triangles_), nearest_(x, triangles_) {}
+      : surface_(surface),
+        numbers_(numbers),
+        x_(x),
+        triangles_(triangles_of(surface, numbers)),
+        winding_(x, triangles_),
+        nearest_(x, triangles_) {}
 
   bool contains(const Vec3& point) const { return winding_(point) > inside; }
   LostPoint way_out(int point, int piece, double size) const {
@@ -82,7 +86,8 @@ std::vector<LostPoint> find_solid_insides(const ContactSurface& surface, const S
     if (!pieces.is_solid(s)) continue;
     std::vector<int> near;  // pieces
     for (int p = 0; p < pieces.count(); ++p)
-      if (p != s && surface.may_touch(pieces.body(p), pieces.body(s)) && boxes[at(p)].intersects(boxes[at(s)]))
+      if (p != s && surface.may_touch(pieces.body(p), pieces.body(s)) &&
+          boxes[at(p)].intersects(boxes[at(s)]))
         near.push_back(p);
     if (near.empty()) continue;
     const Solid solid(surface, pieces.triangles(s), x);

@@ -13,9 +13,9 @@
 namespace muslin {
 
 /// Returns the points whose generalised winding number about a solid piece is above ½, with the solid's
-/// nearest point; by ascending piece, then point. Solids may cross themselves. A piece that lies wholly inside
-/// without crossing the solid, deeper than a tenth of its own size, is taken to be where it belongs, such as a
-/// load in a closed box. x is #P by 3 [m]; `crossing` are the pairs of triangles that cross.
+/// nearest point; by ascending piece, then point. Solids may cross themselves. A piece that lies wholly
+/// inside without crossing the solid, deeper than a tenth of its own size, is taken to be where it belongs,
+/// such as a load in a closed box. x is #P by 3 [m]; `crossing` are the pairs of triangles that cross.
 std::vector<LostPoint> find_solid_insides(const ContactSurface& surface, const SurfacePieces& pieces,
                                           ConstVectors x, std::span<const std::array<int, 2>> crossing);
 

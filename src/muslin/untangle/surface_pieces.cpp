@@ -41,8 +41,7 @@ SurfacePieces::SurfacePieces(const ContactSurface& surface, ConstVectors rest)
     }
     of_triangle_[t] = piece;
     pieces_[at(piece)].triangles.push_back(static_cast<int>(t));
-    const Vec3 &a = rest[at(triangles[t][0])], &b = rest[at(triangles[t][1])],
-               &c = rest[at(triangles[t][2])];
+    const Vec3 &a = rest[at(triangles[t][0])], &b = rest[at(triangles[t][1])], &c = rest[at(triangles[t][2])];
     const double area = (b - a).cross(c - a).norm() / 2;
     for (int i = 0; i < 3; ++i) areas_[at(triangles[t][i])] += area / 3;
   }

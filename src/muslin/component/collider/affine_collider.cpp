@@ -31,6 +31,7 @@ std::optional<ContactPart> AffineCollider::contact_part() const {
   part.body.self_contact = false;
   part.body.solid = true;
   part.body.friction = settings.friction;
+  part.body.layer = settings.layer;
   part.body.stiffness = std::numeric_limits<double>::infinity();
   if (!is_prescribed()) {
     part.body.mass = masses().front();

@@ -115,6 +115,7 @@ std::optional<ContactPart> KinematicMesh::contact_part() const {
   part.body.self_contact = false;
   part.body.solid = true;
   part.body.friction = settings.friction;
+  part.body.layer = settings.layer;
   part.body.stiffness = std::numeric_limits<double>::infinity();
   part.add_mesh(mesh, triangulate(mesh), skin);
   return part;

@@ -98,6 +98,7 @@ std::optional<ContactPart> ShellBody::contact_part() const {
   part.size = mesh.bounds().sizes().maxCoeff();
   part.body.self_contact = settings.self_contact;
   part.body.friction = settings.friction;
+  part.body.layer = settings.layer;
   part.body.radius = own().thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;
   part.body.stiffness = contact_stiffness_share * std::sqrt(stress.warp.slope(0) * stress.weft.slope(0));
   // A body without stretch resistance still needs contact to carry its weight.
