@@ -120,6 +120,21 @@ TEST(ObjReader, SeveralObjectsBecomeGroups) {
   expect_same(read(to_obj(file.mesh, file.mesh.positions), ".obj").mesh, file.mesh);
 }
 
+TEST(ObjReader, KeepsTheFacesOfMaterials) {
+  const MeshFile file = read(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl Blue Cotton\ng rib\nf 1 3 2\nusemtl none\nusemtl rib\nf 2 "
+      "3 1\n"
+      "usemtl Blue Cotton\nf 3 1 2\n",
+      ".obj");
+  ASSERT_EQ(file.materials.size(), 2u) << "a material without faces is left out";
+  EXPECT_EQ(file.materials[0].name, "Blue Cotton");
+  EXPECT_THAT(file.materials[0].faces, ElementsAre(1, 3));
+  EXPECT_EQ(file.materials[1].name, "rib");
+  EXPECT_THAT(file.materials[1].faces, ElementsAre(2));
+  ASSERT_EQ(file.mesh.groups.size(), 1u) << "materials are no groups";
+  EXPECT_THAT(file.mesh.groups[0].faces, ElementsAre(1, 2, 3));
+}
+
 TEST(ObjReader, NamesTheLineOfEveryFault) {
   const std::string good = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const std::vector<std::tuple<std::string, int, const char*>> faults = {

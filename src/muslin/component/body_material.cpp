@@ -9,7 +9,6 @@ namespace muslin {
 namespace {
 
 using schema::Key;
-using schema::Type;
 
 /// A name of the library or the path of a material file.
 Material find_or_read(const std::string& name, const Place& place, const std::filesystem::path& folder) {
@@ -45,40 +44,27 @@ TomlValue with_name(const std::string& name, TomlValue numbers) {
 
 }  // namespace
 
-schema::Declaration material_key(const MaterialUse& use) {
-  Key key = schema::custom<BodySettings>(
-      "material", {Type::text, Type::table}, [](const Key&, const TomlTable&, BodySettings&) {},
-      [&use](const Key& k, const BodySettings& body, TomlValue& out) {
-        if (use.has_numbers(body.material))
-          schema::append(out, k.name, with_name(body.material.name, use.write(body.material)));
-      });
-  key.table = use.keys;
-  key.check = [&use](const Key& k, const void* s, const schema::Subject& subject) {
-    const Material& material = static_cast<const BodySettings*>(s)->material;
-    if (!use.has_numbers(material))
-      throw subject.error(k.name, fmt::format("its material has no numbers for {}", use.plural), use.remedy);
-    use.check(material, subject);
-  };
-  return schema::Declaration(std::move(key))
-      .required(
-          fmt::format("name one (`muslin materials` lists them) or give a table with {}, …", use.quantities))
-      .means("a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table");
+void write_material(const MaterialUse& use, const Key& key, const Material& material, TomlValue& out) {
+  if (use.has_numbers(material)) schema::append(out, key.name, with_name(material.name, use.write(material)));
 }
 
-void read_body_material(const MaterialUse& use, const TomlTable& table, const std::filesystem::path& folder,
-                        BodySettings& body) {
+void check_material(const MaterialUse& use, const Key& key, const Material& material,
+                    const schema::Subject& subject) {
+  if (!use.has_numbers(material))
+    throw subject.error(key.name, fmt::format("its material has no numbers for {}", use.plural), use.remedy);
+  use.check(material, subject);
+}
+
+Material material_of(const MaterialUse& use, const TomlTable& table, const BodySettings& body,
+                     const std::filesystem::path& folder) {
   const TomlValue& value = *table.find("material");
-  if (value.type == TomlValue::Type::string) {
-    body.material = named_material(use, value.string, value.place, folder);
-    return;
-  }
+  if (value.type == TomlValue::Type::string) return named_material(use, value.string, value.place, folder);
   if (value.type != TomlValue::Type::table) {
     throw table.error("material",
                       fmt::format("`material` of {} is neither a name nor a table", table.title()),
                       fmt::format("write material = \"cotton\" or a table {{ … }} with {}", use.quantities));
   }
-  body.material =
-      use.read(use.keys().open(value, fmt::format("`material` of {}", table.title())), body, folder);
+  return use.read(use.keys().open(value, fmt::format("`material` of {}", table.title())), body, folder);
 }
 
 Material base_material(const MaterialUse& use, const TomlTable& table, const std::filesystem::path& folder) {

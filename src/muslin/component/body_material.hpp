@@ -3,6 +3,9 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "muslin/component/body_settings.hpp"
 #include "muslin/schema/declare.hpp"
@@ -23,14 +26,34 @@ struct MaterialUse {
   void (*check)(const Material& material, const schema::Subject& subject);
 };
 
-/// The key, of BodySettings. It checks and writes the material; read_body_material reads it. `use` must be
-/// static.
-schema::Declaration material_key(const MaterialUse& use);
+/// Throws Error(input) for a material that a file could not have set.
+void check_material(const MaterialUse& use, const schema::Key& key, const Material& material,
+                    const schema::Subject& subject);
+/// Appends the material with its name and numbers, if it has any for the kind.
+void write_material(const MaterialUse& use, const schema::Key& key, const Material& material, TomlValue& out);
 
-/// Reads the material under `material` of a body, whose other settings have been read. `folder` is that of
-/// the scene file. Errors: input, file.
-void read_body_material(const MaterialUse& use, const TomlTable& table, const std::filesystem::path& folder,
-                        BodySettings& body);
+/// The key `material`. It checks and writes the material; material_of reads it. `use` must be static.
+template <class S>
+schema::Declaration material_key(const MaterialUse& use, Material S::* member) {
+  schema::Key key = schema::custom<S>(
+      "material", {schema::Type::text, schema::Type::table}, [](const schema::Key&, const TomlTable&, S&) {},
+      [&use, member](const schema::Key& k, const S& s, TomlValue& out) {
+        write_material(use, k, s.*member, out);
+      });
+  key.table = use.keys;
+  key.check = [&use, member](const schema::Key& k, const void* s, const schema::Subject& subject) {
+    check_material(use, k, static_cast<const S*>(s)->*member, subject);
+  };
+  return schema::Declaration(std::move(key))
+      .required(
+          fmt::format("name one (`muslin materials` lists them) or give a table with {}, …", use.quantities))
+      .means("a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table");
+}
+
+/// Returns the material under `material` of a table of a body, whose other settings have been read. `folder`
+/// is that of the scene file. Errors: input, file.
+Material material_of(const MaterialUse& use, const TomlTable& table, const BodySettings& body,
+                     const std::filesystem::path& folder);
 
 /// Returns the material under `base` of a table of numbers. Errors: input, file; also if it has no numbers
 /// for the kind.

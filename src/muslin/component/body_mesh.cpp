@@ -21,8 +21,7 @@ void warn_of_body(const ComponentInputs& inputs, const std::string& body, const 
   inputs.warnings.push_back(fmt::format("body {}: {}", body, sentence));
 }
 
-std::vector<VertexAttribute> read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs,
-                                            Component& component) {
+MeshFile read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, Component& component) {
   component.name = settings.name;
   inputs.progress.at(0.0, "mesh");
   const std::string file = inputs.files.resolve(settings.mesh).string();
@@ -35,7 +34,7 @@ std::vector<VertexAttribute> read_body_mesh(const BodySettings& settings, const 
     require_usable(component.mesh, file);
     component.report = inspect(component.mesh);
     for (const std::string& warning : component.report.warnings) warn_of_body(inputs, settings.name, warning);
-    return std::move(read.attributes);
+    return read;
   });
 }
 

@@ -212,7 +212,10 @@ class GltfReader {
                std::to_string(positions.count));
       return static_cast<std::size_t>(value);
     };
-    out_.begin_part(positions.count, uvs.count);
+    const bool named =
+        part.material >= 0 && static_cast<std::size_t>(part.material) < model_.materials.size();
+    out_.begin_part(positions.count, uvs.count,
+                    named ? model_.materials[static_cast<std::size_t>(part.material)].name : "");
     for (std::size_t v = 0; v < positions.count; ++v)
       out_.position({positions.at(v, 0), positions.at(v, 1), positions.at(v, 2)});
     for (std::size_t v = 0; v < uvs.count; ++v)

@@ -22,13 +22,19 @@ void NodeMesh::begin_node(const std::string& name, const Eigen::Matrix4d& transf
   mesh_.groups.push_back({name, {}, {}});
 }
 
-void NodeMesh::begin_part(std::size_t positions, std::size_t uvs) {
+void NodeMesh::begin_part(std::size_t positions, std::size_t uvs, const std::string& material) {
   stored_ += positions;
   if (stored_ > max_corners) refuse("the mesh is too large");
   part_vertices_.clear();
   part_vertices_.reserve(positions);
   first_uv_ = mesh_.uvs.size();
   part_uvs_ = uvs;
+  part_material_ = 0;
+  if (material.empty()) return;
+  const auto known = std::find_if(materials_.begin(), materials_.end(),
+                                  [&](const MeshGroup& other) { return other.name == material; });
+  part_material_ = static_cast<std::size_t>(known - materials_.begin()) + 1;
+  if (known == materials_.end()) materials_.push_back({material, {}, {}});
 }
 
 void NodeMesh::position(const Vec3& local) {
@@ -52,7 +58,9 @@ void NodeMesh::face(std::span<const std::size_t> corners) {
     mesh_.face_vertices.push_back(part_vertices_[corner]);
     mesh_.corner_uvs.push_back(part_uvs_ > 0 ? static_cast<int>(first_uv_ + corner) : -1);
   }
-  mesh_.groups.back().faces.push_back(static_cast<int>(mesh_.face_count()));
+  const int face = static_cast<int>(mesh_.face_count());
+  mesh_.groups.back().faces.push_back(face);
+  if (part_material_ > 0) materials_[part_material_ - 1].faces.push_back(face);
   mesh_.face_offsets.push_back(static_cast<int>(mesh_.face_vertices.size()));
 }
 
@@ -67,10 +75,12 @@ MeshFile NodeMesh::finish(const std::string& reason, const std::string& extra) {
     group.name = one_word(group.name);
     complete_group(mesh_, group);
   }
+  std::erase_if(materials_, [](const MeshGroup& material) { return material.faces.empty(); });
+  for (MeshGroup& material : materials_) complete_group(mesh_, material);
   std::string note = reason + ": " + std::to_string(stored_) +
                      " stored vertices were welded by position into " +
                      std::to_string(mesh_.positions.size()) + "." + extra;
-  return {std::move(mesh_), std::move(note)};
+  return {std::move(mesh_), std::move(note), {}, std::move(materials_)};
 }
 
 void NodeMesh::refuse(const std::string& problem) const {

@@ -20,14 +20,15 @@ class NodeMesh {
 
   /// `transform` takes the node's coordinates to the scene's. If it mirrors, faces are reversed.
   void begin_node(const std::string& name, const Eigen::Matrix4d& transform);
-  /// `uvs`, the number of texture coordinates, is 0 or `positions`.
-  void begin_part(std::size_t positions, std::size_t uvs);
+  /// `uvs`, the number of texture coordinates, is 0 or `positions`. `material` is that of its faces; empty:
+  /// none.
+  void begin_part(std::size_t positions, std::size_t uvs, const std::string& material = "");
   void position(const Vec3& local);
   void uv(const Vec2& uv);
   /// Indices into the positions of this part.
   void face(std::span<const std::size_t> corners);
 
-  /// Returns the mesh with one group per node if there are several, and a note on the changes.
+  /// Returns the mesh with one group per node if there are several, its materials, and a note on the changes.
   MeshFile finish(const std::string& reason, const std::string& extra);
 
  private:
@@ -35,10 +36,12 @@ class NodeMesh {
 
   std::string file_;
   Mesh mesh_;
+  std::vector<MeshGroup> materials_;
   Welder welder_;
   Eigen::Matrix4d transform_ = Eigen::Matrix4d::Identity();
   bool mirrored_ = false;
   std::size_t first_uv_ = 0, part_uvs_ = 0, stored_ = 0;
+  std::size_t part_material_ = 0;   // counted from 1; 0: none
   std::vector<int> part_vertices_;  // the vertex of each position of the part
 };
 

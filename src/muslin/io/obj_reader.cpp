@@ -11,12 +11,12 @@
 namespace muslin {
 namespace {
 
-// Ignored statements, unrelated to positions, polygons, texture coordinates or groups.
-constexpr std::array ignored = {"vn",    "vp",    "s",        "usemtl",   "mtllib", "usemap",     "maplib",
-                                "mg",    "deg",   "bmat",     "step",     "cstype", "curv",       "curv2",
-                                "surf",  "parm",  "trim",     "hole",     "scrv",   "sp",         "end",
-                                "con",   "bevel", "c_interp", "d_interp", "lod",    "shadow_obj", "trace_obj",
-                                "ctech", "stech", "call",     "csh",      "l"};
+// Ignored statements, unrelated to positions, polygons, texture coordinates, groups or materials.
+constexpr std::array ignored = {"vn",    "vp",    "s",        "mtllib",   "usemap", "maplib",     "mg",
+                                "deg",   "bmat",  "step",     "cstype",   "curv",   "curv2",      "surf",
+                                "parm",  "trim",  "hole",     "scrv",     "sp",     "end",        "con",
+                                "bevel", "lod",   "c_interp", "d_interp", "call",   "shadow_obj", "trace_obj",
+                                "ctech", "stech", "csh",      "l"};
 
 constexpr std::size_t max_names = 256;  // on one `g` statement; bounds the memory a small file can ask for
 
@@ -36,16 +36,19 @@ class ObjReader {
     if (!has_uvs_) mesh_.corner_uvs.clear();
     if (mesh_.face_count() == 0) mesh_.face_offsets.clear();
     collect_groups();
+    MeshFile file{{}, note(), {}, materials()};
     if (colours_[0].values.size() == mesh_.positions.size() && !mesh_.positions.empty())
-      return {std::move(mesh_), note(), {colours_.begin(), colours_.end()}};
-    return {std::move(mesh_), note()};
+      file.attributes.assign(colours_.begin(), colours_.end());
+    file.mesh = std::move(mesh_);
+    return file;
   }
 
  private:
-  // Consecutive faces with the same object and groups.
+  // Consecutive faces with the same object, groups and material.
   struct Run {
     std::size_t first_face = 0;
     int object = -1;
+    int material = -1;
     std::vector<int> groups;
   };
   // An index that was beyond the list when it was read; only records are kept, so the first bad one is there.
@@ -73,6 +76,9 @@ class ObjReader {
     } else if (keyword == "o") {
       const std::string_view name = scanner_.rest_of_line();
       start_run().object = name.empty() ? -1 : identify(std::string(name), object_ids_, object_names_);
+    } else if (keyword == "usemtl") {
+      const std::string_view name = scanner_.rest_of_line();
+      start_run().material = name.empty() ? -1 : identify(std::string(name), material_ids_, material_names_);
     } else if (keyword == "p") {
       points();
     } else if (std::find(ignored.begin(), ignored.end(), keyword) != ignored.end()) {
@@ -196,7 +202,7 @@ class ObjReader {
 
   // Groups come in the order of their first face, so that writing and reading again gives the same order.
   void collect_groups() {
-    runs_.push_back({mesh_.face_count(), -1, {}});
+    runs_.push_back({mesh_.face_count(), -1, -1, {}});
     int only = -2;  // the object of all faces so far; −2 none yet
     bool several = false;
     for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
@@ -232,6 +238,21 @@ class ObjReader {
     for (MeshGroup& each : mesh_.groups) complete_group(mesh_, each);
   }
 
+  /// The runs must be complete.
+  std::vector<MeshGroup> materials() const {
+    std::vector<MeshGroup> result;
+    for (const std::string& name : material_names_) result.push_back({name, {}, {}});
+    for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
+      if (runs_[r].material < 0) continue;
+      std::vector<int>& faces = result[static_cast<std::size_t>(runs_[r].material)].faces;
+      for (std::size_t f = runs_[r].first_face; f < runs_[r + 1].first_face; ++f)
+        faces.push_back(static_cast<int>(f));
+    }
+    std::erase_if(result, [](const MeshGroup& material) { return material.faces.empty(); });
+    for (MeshGroup& each : result) complete_group(mesh_, each);
+    return result;
+  }
+
   std::string note() const {
     std::string text;
     if (left_out_ > 0) text += std::to_string(left_out_) + " lines, curves or surfaces were left out. ";
@@ -248,8 +269,8 @@ class ObjReader {
   std::vector<Forward> forward_vertices_, forward_uvs_;
   std::vector<Run> runs_;
   std::vector<std::pair<int, int>> points_;  // group, vertex
-  std::unordered_map<std::string, int> group_ids_, object_ids_;
-  std::vector<std::string> group_names_, object_names_;
+  std::unordered_map<std::string, int> group_ids_, object_ids_, material_ids_;
+  std::vector<std::string> group_names_, object_names_, material_names_;
   std::array<VertexAttribute, 3> colours_ = {{{"red", {}}, {"green", {}}, {"blue", {}}}};
   std::size_t left_out_ = 0, unknown_ = 0;
   int first_unknown_ = 0;

@@ -41,7 +41,7 @@ class LatticeBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    const std::vector<VertexAttribute> attributes = read_body_mesh(settings_, inputs_, body_);
+    const std::vector<VertexAttribute> attributes = read_body_mesh(settings_, inputs_, body_).attributes;
     make_solid();
     at_place(settings_.place, inputs_.files.resolve(settings_.mesh).string(),
              [&] { fill(inputs_.progress); });

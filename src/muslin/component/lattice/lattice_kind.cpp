@@ -159,13 +159,13 @@ const schema::Table& keys() {
                   "share of voxels around them, as in a solid cut out of a block. Without it a sheet of one "
                   "voxel is "
                   "1.75 times too stiff in stretch and 4.5 times in bending")},
-      {material_key(material_use)});
+      {material_key(material_use, &BodySettings::material)});
   return table;
 }
 
 void finish(const TomlTable& table, const std::filesystem::path& folder, BodySettings& body,
             std::vector<std::string>& warnings) {
-  read_body_material(material_use, table, folder, body);
+  body.material = material_of(material_use, table, body, folder);
   if (table.has("threshold") && body.own.as<Own>().lattice.rule != VoxelRule::threshold)
     warnings.push_back(table.title() + ": `threshold` has no effect without `voxels = \"threshold\"`");
   const Material& material = body.material;

@@ -10,8 +10,8 @@
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/placement.hpp"
 #include "muslin/component/shell/shell_body.hpp"
-#include "muslin/component/shell/trusted_edge.hpp"
 #include "muslin/core/counted.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/material/keyed_material.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/shell/inverted_triangles.hpp"
@@ -33,16 +33,47 @@ class ShellBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    const std::vector<VertexAttribute> attributes = read_body_mesh(settings_, inputs_, body_);
+    const MeshFile read = read_body_mesh(settings_, inputs_, body_);
+    const std::vector<int> fabric_of_face = lay_fabrics(read.materials);
     const Mesh rest = rest_mesh();
     at_place(settings_.mesh_place, file_, [&] { make_shell(rest); });
-    vary_material(attributes);
+    for (const int face : body_.shell.faces) body_.triangle_fabrics.push_back(fabric_of_face[at(face)]);
+    vary_material(read.attributes);
     weigh(body_);
     return built_;
   }
 
  private:
   void say(const std::string& sentence) { warn_of_body(inputs_, settings_.name, sentence); }
+
+  /// Returns the fabric of each face. The material of the first fabric in use becomes that of the body.
+  std::vector<int> lay_fabrics(const std::vector<MeshGroup>& materials_of_file) {
+    FabricsOfFaces found =
+        fabrics_of_faces(settings_.material, settings_.place, own_.fabrics, body_.mesh, materials_of_file);
+    body_.fabrics = std::move(found.fabrics);
+    body_.settings.material = body_.fabrics.front().material;
+    auto& own = body_.settings.own.as<ShellBodySettings>();
+    if (body_.has_several_fabrics()) {
+      for (const FabricInUse& fabric : body_.fabrics) require_moduli(fabric);
+    } else if (!own.stretch_limit) {
+      own.stretch_limit = largest_stretch_limit(body_.material());
+    }
+    return std::move(found.of_face);
+  }
+
+  /// Only moduli can change from triangle to triangle.
+  static void require_moduli(const FabricInUse& fabric) {
+    const ShellMaterial& m = fabric.numbers();
+    const char* problem = nullptr;
+    if (has_curves(m) || has_bending_curves(m)) problem = "measured curves";
+    if (has_bending_friction(m)) problem = "internal friction of bending";
+    if (m.yield_curvature) problem = "a `yield_curvature`";
+    if (problem == nullptr) return;
+    throw Error(ErrorKind::input, fabric.place,
+                fmt::format("the fabric `{}` has {}, which a body of several fabrics cannot have",
+                            fabric.name, problem),
+                "give it moduli, or make its faces a body of their own, joined by an [[attachment]]");
+  }
 
   /// The stress-free shape: the mesh as it was modelled (scaled, not turned), or another of the same
   /// polygons.
@@ -108,14 +139,29 @@ class ShellBuilder {
   }
 
   void vary_material(const std::vector<VertexAttribute>& attributes) {
-    const ShellMaterial& material = body_.material();
-    body_.maps = read_maps(material.variations, shell_material_table(), attributes, inputs_, body_);
-    if (body_.maps.empty()) return;
-    const Place& place = body_.maps.front().variation.place;
-    if (has_curves(material) || has_bending_curves(material))
-      throw Error(ErrorKind::input, place, "maps and measured curves are in one material",
-                  "give moduli in place of the curves");
-    for (const MappedNumber& map : body_.maps) {
+    for (FabricInUse& fabric : body_.fabrics) {
+      fabric.maps =
+          read_maps(fabric.numbers().variations, shell_material_table(), attributes, inputs_, body_);
+      for (MappedNumber map : fabric.maps) {
+        if (body_.has_several_fabrics()) map.variation.key = fabric.name + "." + map.variation.key;
+        body_.maps.push_back(std::move(map));
+      }
+      check_maps(fabric);
+    }
+    if (body_.maps.empty() && !body_.has_several_fabrics()) return;
+    body_.triangle_materials = body_.materials_of_triangles(0);
+    check_triangles(body_.triangle_materials, "");
+    for (const FabricInUse& fabric : body_.fabrics)
+      for (const double time : times_to_check(fabric.numbers().variations))
+        check_triangles(body_.materials_of_triangles(time), fmt::format(" and {:.4g} s", time));
+  }
+
+  static void check_maps(const FabricInUse& fabric) {
+    const ShellMaterial& material = fabric.numbers();
+    if (!fabric.maps.empty() && (has_curves(material) || has_bending_curves(material)))
+      throw Error(ErrorKind::input, fabric.maps.front().variation.place,
+                  "maps and measured curves are in one material", "give moduli in place of the curves");
+    for (const MappedNumber& map : fabric.maps) {
       const std::string& key = map.variation.key;
       const bool bends = key == "bending_warp" || key == "bending_weft" || key == "bending_bias";
       if (material.yield_curvature && bends)
@@ -123,16 +169,13 @@ class ShellBuilder {
                     fmt::format("`{}` varies by a map in a material with `yield_curvature`", key),
                     "give a sheet that creases one number for its bending");
     }
-    body_.triangle_materials = body_.materials_of_triangles(0);
-    check_triangles(body_.triangle_materials, "", place);
-    for (const double time : times_to_check(material.variations))
-      check_triangles(body_.materials_of_triangles(time), fmt::format(" and {:.4g} s", time), place);
   }
 
   /// `when` is for messages.
-  void check_triangles(const std::vector<ShellMaterial>& materials, const std::string& when,
-                       const Place& place) const {
+  void check_triangles(const std::vector<ShellMaterial>& materials, const std::string& when) const {
     for (std::size_t t = 0; t < materials.size(); ++t) {
+      const FabricInUse& fabric = body_.fabrics[at(body_.triangle_fabrics[t])];
+      const Place& place = fabric.maps.empty() ? fabric.place : fabric.maps.front().variation.place;
       shell_material_table().check(
           materials[t], schema::Subject(fmt::format("the material of body `{}` at polygon {}{}",
                                                     settings_.name, body_.shell.faces[t] + 1, when),
@@ -153,7 +196,7 @@ class ShellBuilder {
   /// Warns where the membrane is what limits the length of edges: all coarse meshes miss folds, but then they
   /// hang too softly, as users expect.
   void warn_of_long_edges() {
-    const TrustedEdge trusted = trusted_edge(body_.material(), own_.compression);
+    const TrustedEdge trusted = body_.shortest_trusted_edge();
     const double edge = body_.shell.mean_edge, size = body_.mesh.bounds().sizes().maxCoeff();
     if (trusted.unlocked >= trusted.resolved || edge <= trusted.unlocked || size < folding_size * edge)
       return;
@@ -161,7 +204,7 @@ class ShellBuilder {
         "its edges are {:.2g} m long on average; with elastic compression {} drapes too stiffly with "
         "more than {:.2g} m, because folds across edges strain the membrane; leave out `compression`, "
         "or refine the mesh",
-        edge, settings_.material.name, trusted.unlocked));
+        edge, body_.settings.material.name, trusted.unlocked));
   }
 
   const BodySettings& settings_;

@@ -11,11 +11,11 @@
 #include "muslin/component/body_maps.hpp"
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/description.hpp"
-#include "muslin/component/shell/trusted_edge.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/core/disjoint_sets.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/hash.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/io/vtk_file.hpp"
@@ -47,6 +47,17 @@ VtkGrid triangles(const Shell& shell, const Mesh& mesh) {
   return grid;
 }
 
+nlohmann::ordered_json fabrics_json(const ShellBody& body) {
+  const std::vector<double> areas = body.fabric_areas(), masses = body.fabric_masses();
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t f = 0; f < body.fabrics.size(); ++f)
+    list.push_back({{"name", body.fabrics[f].name},
+                    {"material", body.fabrics[f].material.name},
+                    {"area", areas[f]},
+                    {"mass", masses[f]}});
+  return list;
+}
+
 }  // namespace
 
 const ShellMaterial& ShellBody::material() const {
@@ -56,17 +67,79 @@ const ShellMaterial& ShellBody::material() const {
 }
 
 std::vector<ShellMaterial> ShellBody::materials_of_triangles(double time) const {
-  std::vector<double> numbers = numbers_at(material().variations, time);
+  std::vector<std::vector<double>> numbers;
+  for (const FabricInUse& fabric : fabrics) numbers.push_back(numbers_at(fabric.numbers().variations, time));
   std::vector<ShellMaterial> materials;
   materials.reserve(shell.triangles.size());
-  for (const Vec3i& triangle : shell.triangles) {
-    for (const MappedNumber& map : maps) numbers[map.index] = map.mean(triangle);
-    materials.push_back(with_numbers(material(), numbers));
+  for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
+    const std::size_t f = at(triangle_fabrics[t]);
+    for (const MappedNumber& map : fabrics[f].maps) numbers[f][map.index] = map.mean(shell.triangles[t]);
+    materials.push_back(with_numbers(fabrics[f].numbers(), numbers[f]));
   }
   return materials;
 }
 
+std::optional<double> ShellBody::stretch_limit() const {
+  if (!has_several_fabrics()) return own().stretch_limit;
+  double largest = 0;
+  for (const ShellMaterial& at : triangle_materials) {
+    if (!at.stretch_limit) return std::nullopt;
+    largest = std::max(largest, *at.stretch_limit);
+  }
+  return largest;
+}
+
+TrustedEdge ShellBody::shortest_trusted_edge() const {
+  TrustedEdge shortest = trusted_edge(material(), own().compression);
+  for (const FabricInUse& fabric : fabrics) {
+    const TrustedEdge edge = trusted_edge(fabric.numbers(), own().compression);
+    if (edge.length() < shortest.length()) shortest = edge;
+  }
+  return shortest;
+}
+
+template <class Visit>
+void ShellBody::for_each_share(const Visit& visit) const {
+  // Cloth that shrinks keeps its mass.
+  const double third = 1 / (3 * own().rest_scale().prod());
+  std::vector<const MappedNumber*> densities;
+  for (const FabricInUse& fabric : fabrics) densities.push_back(find_map(fabric.maps, "areal_density"));
+  for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
+    const std::size_t f = at(triangle_fabrics[t]);
+    for (const int v : shell.triangles[t]) {
+      const double density =
+          densities[f] != nullptr ? densities[f]->at(at(v)) : fabrics[f].numbers().areal_density;
+      visit(t, at(v), density * third * shell.areas[t]);
+    }
+  }
+}
+
+std::vector<double> ShellBody::fabric_masses() const {
+  std::vector<double> masses(fabrics.size(), 0.0);
+  for_each_share([&](std::size_t t, std::size_t, double share) { masses[at(triangle_fabrics[t])] += share; });
+  return masses;
+}
+
+std::vector<double> ShellBody::fabric_areas() const {
+  std::vector<double> areas(fabrics.size(), 0.0);
+  for (std::size_t t = 0; t < shell.areas.size(); ++t) areas[at(triangle_fabrics[t])] += shell.areas[t];
+  return areas;
+}
+
+std::vector<double> ShellBody::mass_dampings() const {
+  std::vector<double> dampings(mesh.vertex_count(), 0.0);
+  for_each_share([&](std::size_t t, std::size_t v, double share) {
+    dampings[v] += share * material_at(t).mass_damping;
+  });
+  return dampings;
+}
+
 std::vector<double> ShellBody::masses() const {
+  if (has_several_fabrics()) {
+    std::vector<double> masses(mesh.vertex_count(), 0.0);
+    for_each_share([&](std::size_t, std::size_t v, double share) { masses[v] += share; });
+    return masses;
+  }
   // Cloth that shrinks keeps its mass.
   const double scale = own().rest_scale().prod(), density = material().areal_density / scale;
   std::vector<double> masses = shell.vertex_areas;
@@ -89,10 +162,21 @@ std::vector<int> ShellBody::parts() const {
   return parts.find_all();
 }
 
+double ShellBody::mean_modulus() const {
+  const auto modulus = [](const ShellMaterial& material) {
+    const SheetStress stress = stress_of(material);
+    return std::sqrt(stress.warp.slope(0) * stress.weft.slope(0));
+  };
+  if (!has_several_fabrics()) return modulus(material());
+  const std::vector<double> areas = fabric_areas();
+  double sum = 0;
+  for (std::size_t f = 0; f < fabrics.size(); ++f) sum += areas[f] * modulus(fabrics[f].numbers());
+  return sum / shell.area;
+}
+
 std::optional<ContactPart> ShellBody::contact_part() const {
   if (!settings.contact) return std::nullopt;
   const Triangulation cut = triangulate(mesh);
-  const SheetStress stress = stress_of(material());
   ContactPart part;
   part.edge = mean_edge(mesh.positions, cut.triangles);
   part.size = mesh.bounds().sizes().maxCoeff();
@@ -100,7 +184,7 @@ std::optional<ContactPart> ShellBody::contact_part() const {
   part.body.friction = settings.friction;
   part.body.layer = settings.layer;
   part.body.radius = own().thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;
-  part.body.stiffness = contact_stiffness_share * std::sqrt(stress.warp.slope(0) * stress.weft.slope(0));
+  part.body.stiffness = contact_stiffness_share * mean_modulus();
   // A body without stretch resistance still needs contact to carry its weight.
   if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;
   part.add_mesh(mesh, cut, skin);
@@ -128,6 +212,11 @@ std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
     const std::array yield = {*m.yield_curvature, m.yield_hardening, m.yield_recovery.value_or(0)};
     hash = hash_bytes(yield.data(), sizeof yield, hash);
   }
+  if (has_several_fabrics()) {
+    for (const FabricInUse& fabric : fabrics)
+      hash = hash_bytes(&fabric.numbers().areal_density, sizeof(double), hash);
+    hash = hash_bytes(triangle_fabrics.data(), triangle_fabrics.size() * sizeof(int), hash);
+  }
   return maps_hash(maps, hash);
 }
 
@@ -146,10 +235,11 @@ std::string ShellBody::description_json() const {
   json["hinges"] = s.hinges;
   json["area"] = shell.area;
   json["mean_edge"] = shell.mean_edge;
-  json["trusted_edge"] = trusted_edge(material(), own().compression).length();
-  if (own().stretch_limit) json["stretch_limit"] = *own().stretch_limit;
+  json["trusted_edge"] = shortest_trusted_edge().length();
+  if (const auto limit = stretch_limit()) json["stretch_limit"] = *limit;
   json["warp"] = own().warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
   json["material"] = settings.material.name;
+  if (has_several_fabrics()) json["fabrics"] = fabrics_json(*this);
   append_counts(json, s);
   append_stable_step(json, s);
   return to_line(json);
@@ -157,15 +247,31 @@ std::string ShellBody::description_json() const {
 
 std::string ShellBody::description() const {
   const BodyStatistics& s = statistics;
-  const ShellMaterial& m = material();
-  const SheetStress stress = stress_of(m);
-  const SheetMoments moments = moments_of(m);
   std::string text =
       fmt::format("body {}: {} ({}, shell)\n", name, settings.mesh, counted(mesh.face_count(), "polygon"));
   text += fmt::format("  shell       {} vertices, {} triangles, {} hinges, edges of {:.4g} m on average\n",
                       s.vertices, s.triangles, s.hinges, shell.mean_edge);
-  text += fmt::format("  mass        {:.6g} kg of {}, {:.4g} kg/m² on {:.6g} m²\n", s.mass,
-                      settings.material.name, m.areal_density, shell.area / own().rest_scale().prod());
+  for (std::size_t f = 0; f < fabrics.size(); ++f) text += description_of(f);
+  if (const double edge = shortest_trusted_edge().length(); edge > 0)
+    text += fmt::format("  drape       as the fabric's with edges of up to {:.2g} m\n", edge);
+  if (const auto limit = stretch_limit())
+    text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *limit);
+  return text;
+}
+
+std::string ShellBody::description_of(std::size_t fabric) const {
+  const FabricInUse& of = fabrics[fabric];
+  const ShellMaterial& m = of.numbers();
+  const SheetStress stress = stress_of(m);
+  const SheetMoments moments = moments_of(m);
+  std::string text;
+  double mass = statistics.mass, area = shell.area;
+  if (has_several_fabrics()) {
+    text = fmt::format("  fabric      {}\n", of.name);
+    mass = fabric_masses()[fabric], area = fabric_areas()[fabric];
+  }
+  text += fmt::format("  mass        {:.6g} kg of {}, {:.4g} kg/m² on {:.6g} m²\n", mass, of.material.name,
+                      m.areal_density, area / own().rest_scale().prod());
   text += fmt::format(
       "  stiffness   warp {:.4g}, weft {:.4g}, shear {:.4g} N/m; bending {:.3g}, {:.3g}, bias "
       "{:.3g} N·m\n",
@@ -185,10 +291,6 @@ std::string ShellBody::description() const {
     text += fmt::format(
         "  yield       where warp bends by more than {:.3g}/m, then with {:.3g} of its stiffness\n",
         *m.yield_curvature, m.yield_hardening);
-  if (const double edge = trusted_edge(m, own().compression).length(); edge > 0)
-    text += fmt::format("  drape       as the fabric's with edges of up to {:.2g} m\n", edge);
-  if (own().stretch_limit)
-    text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *own().stretch_limit);
   return text;
 }
 

@@ -3,7 +3,7 @@
 //
 // Contact sees its triangles, thickened by half its thickness. The thickness is that of the settings, or else
 // 0.5 mm, but at most a tenth of its mean edge. The stiffness of a contact is 0.15 × its mean membrane
-// modulus [N/m].
+// modulus [N/m], the mean over its area where it has several fabrics.
 #pragma once
 
 #include <memory>
@@ -15,6 +15,8 @@
 #include "muslin/component/body_settings.hpp"
 #include "muslin/component/component.hpp"
 #include "muslin/component/shell/shell_body_settings.hpp"
+#include "muslin/component/shell/shell_fabric.hpp"
+#include "muslin/component/shell/trusted_edge.hpp"
 #include "muslin/potential/symmetric_pattern.hpp"
 #include "muslin/shell/shell.hpp"
 
@@ -25,7 +27,10 @@ class ShellBody final : public Component {
   BodySettings settings;  ///< with numbers of a shell in `material`
   Shell shell;
   std::shared_ptr<const SymmetricPattern> pattern;  ///< of the pairs of vertices that terms couple
-  std::vector<ShellMaterial> triangle_materials;    ///< #T where maps vary the material; empty: one for all
+  std::vector<FabricInUse> fabrics;   ///< at least one; the first has the material of `settings`
+  std::vector<int> triangle_fabrics;  ///< #T, index into `fabrics`
+  /// #T where maps or several fabrics vary the material; empty: one for all.
+  std::vector<ShellMaterial> triangle_materials;
 
   std::string kind() const override { return "shell"; }
   void add_terms(std::span<const std::uint8_t> held) override;
@@ -35,7 +40,8 @@ class ShellBody final : public Component {
   double spacing() const override { return shell.mean_edge; }
   std::vector<int> parts() const override;
   double max_stretch(ConstVectors x) const override { return muslin::max_stretch(shell, x); }
-  std::optional<double> stretch_limit() const override { return own().stretch_limit; }
+  /// The largest, if all triangles have one.
+  std::optional<double> stretch_limit() const override;
 
   std::optional<ContactPart> contact_part() const override;
 
@@ -48,13 +54,31 @@ class ShellBody final : public Component {
 
   /// The numbers of its material. Errors: usage, if the material has none of shells.
   const ShellMaterial& material() const;
-  /// Returns the numbers at each triangle at a time [s], for a material that varies by maps.
+  bool has_several_fabrics() const { return fabrics.size() > 1; }
+  /// Returns the mass of each fabric [kg] and its area at rest [m²].
+  std::vector<double> fabric_masses() const;
+  std::vector<double> fabric_areas() const;
+  /// Returns the coefficients of mass damping of the vertices, Σ α m over the triangles around each, #V
+  /// [kg/s].
+  std::vector<double> mass_dampings() const;
+  /// Returns the numbers at each triangle at a time [s], for fabrics that vary by maps or are several.
   std::vector<ShellMaterial> materials_of_triangles(double time) const;
   /// The numbers at a triangle.
   const ShellMaterial& material_at(std::size_t t) const {
     return triangle_materials.empty() ? material() : triangle_materials[t];
   }
+  /// Returns the shortest of those of its fabrics.
+  TrustedEdge shortest_trusted_edge() const;
   const ShellBodySettings& own() const { return settings.own.as<ShellBodySettings>(); }
+
+ private:
+  std::string description_of(std::size_t fabric) const;
+  /// Returns the mean membrane modulus at rest [N/m].
+  double mean_modulus() const;
+  /// Calls visit(t, v, share) for every corner v of every triangle t with a third of the triangle's mass
+  /// [kg].
+  template <class Visit>
+  void for_each_share(const Visit& visit) const;
 };
 
 /// Builds a shell. Errors: input and file, with the place in the scene and the mesh file.

@@ -3,7 +3,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "muslin/component/shell/shell_fabric.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
 
@@ -23,6 +25,8 @@ struct ShellBodySettings {
   std::optional<double> rest_scale_weft;  ///< default: as warp
   Compression compression = Compression::buckling;
   std::optional<double> stretch_limit;  ///< of length to rest length in every direction; default: none
+
+  std::vector<ShellFabric> fabrics;  ///< of faces that do not have the material of the body
 
   Vec2 rest_scale() const { return {rest_scale_warp, rest_scale_weft.value_or(rest_scale_warp)}; }
 };

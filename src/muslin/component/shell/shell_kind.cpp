@@ -67,6 +67,38 @@ Material read_table(const TomlTable& table, const BodySettings& /*body*/,
   return material;
 }
 
+const schema::Table& fabric_table() {
+  static const schema::Table table = schema::table_of<ShellFabric>(
+      "[[body.fabric]]",
+      {schema::text("faces", &ShellFabric::faces)
+           .required()
+           .means("a face group of the mesh (OBJ `g`), or a material of its file (`usemtl` "
+                  "of OBJ, materials of glTF)"),
+       material_key(material_use, &ShellFabric::material)});
+  return table;
+}
+
+/// The key checks and writes the fabrics; `finish` reads them.
+schema::Declaration fabric_key() {
+  schema::Key key = schema::custom<Own>(
+      "fabric", {schema::Type::tables}, [](const schema::Key&, const TomlTable&, Own&) {},
+      [](const schema::Key& k, const Own& own, TomlValue& out) {
+        TomlValue fabrics = schema::list({});
+        for (const ShellFabric& fabric : own.fabrics) fabrics.items.push_back(fabric_table().write(fabric));
+        schema::append(out, k.name, std::move(fabrics));
+      });
+  key.table = fabric_table;
+  key.check = [](const schema::Key&, const void* s, const schema::Subject&) {
+    for (const ShellFabric& fabric : static_cast<const Own*>(s)->fabrics)
+      fabric_table().check(
+          fabric, schema::Subject(fmt::format("[[body.fabric]] of `{}`", fabric.faces), fabric.place));
+  };
+  return schema::Declaration(std::move(key))
+      .template shown_if<Own>([](const Own& own) { return !own.fabrics.empty(); })
+      .otherwise("one for all faces")
+      .means("fabrics of some faces; the others have `material`");
+}
+
 const schema::Table& keys() {
   static const schema::Table table = kind_table<Own>(
       "shell",
@@ -97,33 +129,53 @@ const schema::Table& keys() {
            .may_change_on_resume()
            .otherwise("that of the material, or none")
            .means("largest stretch of a triangle in any direction, as length over rest length; 1.05 allows "
-                  "5 %")},
-      {material_key(material_use)});
+                  "5 %"),
+       fabric_key()},
+      {material_key(material_use, &BodySettings::material)});
   return table;
 }
 
-/// The largest of a limit that varies.
-std::optional<double> largest_limit(const ShellMaterial& material) {
-  const schema::Variation* variation = schema::find_variation(material.variations, "stretch_limit");
-  if (variation == nullptr || !variation->is_map()) return material.stretch_limit;
-  return variation->greatest();
+void read_fabrics(const TomlTable& table, const std::filesystem::path& folder, BodySettings& body) {
+  if (!table.has("fabric")) return;
+  for (const TomlValue& value : schema::section_values("fabric", table)) {
+    const TomlTable own = fabric_table().open(value, fmt::format("a fabric of {}", table.title()));
+    ShellFabric fabric;
+    fabric_table().read(own, fabric);
+    fabric.material = material_of(material_use, own, body, folder);
+    body.own.as<Own>().fabrics.push_back(std::move(fabric));
+  }
+}
+
+/// Warns of numbers that are legal but probably unintended.
+void look_at(const ShellMaterial& numbers, std::optional<double> limit, const std::string& title,
+             std::vector<std::string>& warnings) {
+  if (limit && *limit < low_stretch_limit) {
+    warnings.push_back(fmt::format(
+        "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",
+        title, low_stretch_limit, low_stretch_limit));
+  }
+  if (numbers.membrane_shear == 0 && !numbers.shear_curve)
+    warnings.push_back(title + ": a material without `membrane_shear` does not resist shear");
 }
 
 void finish(const TomlTable& table, const std::filesystem::path& folder, BodySettings& body,
             std::vector<std::string>& warnings) {
-  read_body_material(material_use, table, folder, body);
-  std::optional<double>& limit = body.own.as<Own>().stretch_limit;
-  if (limit && body.material.shell)
-    schema::forget_variation(body.material.shell->variations, "stretch_limit");
-  const ShellMaterial numbers = body.material.shell.value_or(ShellMaterial());
-  if (!limit) limit = largest_limit(numbers);
-  if (limit && *limit < low_stretch_limit) {
-    warnings.push_back(fmt::format(
-        "{}: a `stretch_limit` of less than {} makes steps many times slower; cloth looks the same with {}",
-        table.title(), low_stretch_limit, low_stretch_limit));
-  }
-  if (numbers.membrane_shear == 0 && !numbers.shear_curve)
-    warnings.push_back(table.title() + ": a material without `membrane_shear` does not resist shear");
+  body.material = material_of(material_use, table, body, folder);
+  read_fabrics(table, folder, body);
+  auto& own = body.own.as<Own>();
+  const bool given = own.stretch_limit.has_value(), several = !own.fabrics.empty();
+  const auto complete = [&](Material& material, const std::string& title) {
+    if (!material.shell) return;
+    ShellMaterial& numbers = *material.shell;
+    if (given) schema::forget_variation(numbers.variations, "stretch_limit");
+    if (given && several) numbers.stretch_limit = own.stretch_limit;
+    look_at(numbers, given ? own.stretch_limit : largest_stretch_limit(numbers), title, warnings);
+  };
+  complete(body.material, table.title());
+  for (ShellFabric& fabric : own.fabrics)
+    complete(fabric.material, fmt::format("`{}` of {}", fabric.faces, table.title()));
+  if (!given && !several && body.material.shell)
+    own.stretch_limit = largest_stretch_limit(*body.material.shell);
 }
 
 std::vector<std::string*> cut_meshes(BodySettings& body) {

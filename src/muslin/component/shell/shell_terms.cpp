@@ -42,21 +42,22 @@ class ShellTerms {
       bound_.add(*membrane_on(nullptr, even), 3, greatest(&ShellMaterial::stiffness_damping));
     }
     // The limit has no stiffness at rest, so that the stable step does not know it.
-    if (body_.own().stretch_limit) add("stretch limit", limit_on(pattern));
+    if (is_limited()) add("stretch limit", limit_on(pattern));
     const auto bending = bending_on(pattern, held, even);
     add_bending(bending, held);
     // Its blocks are those of half the stiffness that bounds it.
     bound_.add(*bending, 2 * 4, greatest(&ShellMaterial::bending_damping));
     if (has_bending_friction(m)) add_bending_friction(*bending, held);
     add_dampings(pattern, held, membrane, bending);
-    const std::vector<double> masses = body_.masses();
     const MappedNumber* map = find_map(body_.maps, "mass_damping");
-    const double slowing = map != nullptr ? map->variation.greatest() : m.mass_damping;
-    bound_.apply(masses, slowing, body_.statistics);
+    const double slowing =
+        map != nullptr ? map->variation.greatest() : greatest(&ShellMaterial::mass_damping);
+    bound_.apply(body_.masses(), slowing, body_.statistics);
   }
 
  private:
   using Pattern = std::shared_ptr<const SymmetricPattern>;
+  static constexpr double unlimited = 10;  // a limit, without stiffness
   static constexpr auto even = [](const ShellMaterial&) { return 1.0; };
 
   /// The numbers of all triangles, or one for all.
@@ -86,20 +87,27 @@ class ShellTerms {
     }
     return std::make_shared<MembraneEnergy>(body_.shell, moduli, std::move(pattern), rigidities);
   }
+  bool is_limited() const {
+    if (!body_.has_several_fabrics()) return body_.own().stretch_limit.has_value();
+    return std::any_of(body_.triangle_materials.begin(), body_.triangle_materials.end(),
+                       [](const ShellMaterial& at) { return at.stretch_limit.has_value(); });
+  }
   std::shared_ptr<const Potential> limit_on(Pattern pattern) const {
-    const double limit = *body_.own().stretch_limit, strain = 0.5 * (limit * limit - 1);
+    const double largest = body_.own().stretch_limit.value_or(unlimited);
+    const double strain = 0.5 * (largest * largest - 1);
     double stiffest = std::max(stress_.warp.slope(strain), stress_.weft.slope(strain));
     for (const ShellMaterial& at : body_.triangle_materials)
       stiffest = std::max({stiffest, at.membrane_warp, at.membrane_weft});
     const auto stiffness = [&](double at) {
       return stretch_limit_stiffness(stiffest, body_.statistics.mass, body_.shell.mean_edge, at);
     };
-    if (find_map(body_.maps, "stretch_limit") == nullptr)
-      return std::make_shared<StretchLimitEnergy>(body_.shell, limit, stiffness(limit), std::move(pattern));
+    if (!body_.has_several_fabrics() && find_map(body_.maps, "stretch_limit") == nullptr)
+      return std::make_shared<StretchLimitEnergy>(body_.shell, largest, stiffness(largest),
+                                                  std::move(pattern));
     std::vector<double> limits, stiffnesses;
     for (const ShellMaterial& at : materials()) {
-      limits.push_back(*at.stretch_limit);
-      stiffnesses.push_back(stiffness(*at.stretch_limit));
+      limits.push_back(at.stretch_limit.value_or(unlimited));
+      stiffnesses.push_back(at.stretch_limit ? stiffness(*at.stretch_limit) : 0);
     }
     return std::make_shared<StretchLimitEnergy>(body_.shell, limits, stiffnesses, std::move(pattern));
   }
@@ -142,25 +150,37 @@ class ShellTerms {
   void add_dampings(const Pattern& pattern, std::span<const std::uint8_t> held,
                     std::shared_ptr<const ElementEnergy> membrane,
                     std::shared_ptr<const ElementEnergy> bending) {
-    const ShellMaterial& m = material_;
-    const auto varies = [&](const char* key) { return find_map(body_.maps, key) != nullptr; };
-    if (m.stiffness_damping > 0) {
-      if (varies("stiffness_damping"))
-        membrane = membrane_on(
-            pattern, [&](const ShellMaterial& at) { return at.stiffness_damping / m.stiffness_damping; });
-      add_damping("stiffness damping", std::make_shared<ElementDamping>(membrane, m.stiffness_damping));
+    if (const double beta = nominal(&ShellMaterial::stiffness_damping); beta > 0) {
+      if (varies(&ShellMaterial::stiffness_damping))
+        membrane = membrane_on(pattern, [&](const ShellMaterial& at) { return at.stiffness_damping / beta; });
+      add_damping("stiffness damping", std::make_shared<ElementDamping>(membrane, beta));
     }
-    if (m.bending_damping > 0) {
-      if (!body_.maps.empty())
-        bending = bending_on(pattern, held,
-                             [&](const ShellMaterial& at) { return at.bending_damping / m.bending_damping; });
-      add_damping("bending damping", std::make_shared<ElementDamping>(bending, m.bending_damping));
+    if (const double beta = nominal(&ShellMaterial::bending_damping); beta > 0) {
+      if (varies(&ShellMaterial::bending_damping))
+        bending =
+            bending_on(pattern, held, [&](const ShellMaterial& at) { return at.bending_damping / beta; });
+      add_damping("bending damping", std::make_shared<ElementDamping>(bending, beta));
     }
-    if (m.mass_damping == 0) return;
-    std::vector<double> masses = body_.masses();
+    add_mass_damping();
+  }
+  void add_mass_damping() {
+    const double alpha = nominal(&ShellMaterial::mass_damping);
+    if (alpha == 0) return;
+    std::vector<double> masses = body_.has_several_fabrics() ? body_.mass_dampings() : body_.masses();
+    if (body_.has_several_fabrics())
+      for (double& mass : masses) mass /= alpha;
     if (const MappedNumber* map = find_map(body_.maps, "mass_damping"))
-      for (std::size_t v = 0; v < masses.size(); ++v) masses[v] *= map->at(v) / m.mass_damping;
-    add_damping("mass damping", std::make_shared<MassDamping>(m.mass_damping, std::move(masses)));
+      for (std::size_t v = 0; v < masses.size(); ++v) masses[v] *= map->at(v) / alpha;
+    add_damping("mass damping", std::make_shared<MassDamping>(alpha, std::move(masses)));
+  }
+  /// The number of the body's material, or the greatest one where that is 0.
+  double nominal(double ShellMaterial::* number) const {
+    return material_.*number > 0 ? material_.*number : greatest(number);
+  }
+  bool varies(double ShellMaterial::* number) const {
+    const double one = nominal(number);
+    return std::any_of(materials().begin(), materials().end(),
+                       [&](const ShellMaterial& at) { return at.*number != one; });
   }
   /// The greatest value of a number that may vary by a map, or follow one that does.
   double greatest(double ShellMaterial::* number) const {
@@ -195,13 +215,16 @@ class ShellTerms {
 }  // namespace
 
 void ShellBody::add_terms(std::span<const std::uint8_t> held) {
-  const schema::Variations& variations = material().variations;
+  schema::Variations variations;
+  for (const FabricInUse& fabric : fabrics)
+    variations.insert(variations.end(), fabric.numbers().variations.begin(),
+                      fabric.numbers().variations.end());
   const std::vector<double> times = keyframe_times(variations);
   if (times.empty()) return ShellTerms(*this).add(held);
   pattern = block_pattern(shell);
   // The terms belong to this body and live as long as it does.
   add_changing_terms(*this,
-                     {times, [&variations](double time) { return keyed_numbers(variations, time); },
+                     {times, [variations](double time) { return keyed_numbers(variations, time); },
                       [this, always_held = std::vector<std::uint8_t>(held.begin(), held.end())](double time) {
                         const auto at_time = std::make_shared<ShellBody>();
                         at_time->name = name;
@@ -209,10 +232,15 @@ void ShellBody::add_terms(std::span<const std::uint8_t> held) {
                         at_time->vertex_count = vertex_count;
                         at_time->statistics = statistics;
                         at_time->settings = settings;
-                        at_time->settings.material.shell = muslin::material_at(material(), time);
                         at_time->shell = shell;
                         at_time->maps = maps;
-                        if (!maps.empty()) at_time->triangle_materials = materials_of_triangles(time);
+                        at_time->fabrics = fabrics;
+                        for (FabricInUse& fabric : at_time->fabrics)
+                          fabric.material.shell = muslin::material_at(fabric.numbers(), time);
+                        at_time->settings.material = at_time->fabrics.front().material;
+                        at_time->triangle_fabrics = triangle_fabrics;
+                        if (!triangle_materials.empty())
+                          at_time->triangle_materials = materials_of_triangles(time);
                         at_time->pattern = pattern;
                         ShellTerms(*at_time).add(always_held);
                         return at_time;
