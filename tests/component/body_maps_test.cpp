@@ -17,6 +17,7 @@
 
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/core/index.hpp"
+#include "muslin/render/image.hpp"
 #include "muslin/simulation/simulation.hpp"
 
 namespace muslin {
@@ -146,6 +147,29 @@ TEST_F(Maps, WeightTheVerticesOfAGroup) {
   EXPECT_EQ(map.at(0), 1.2);
   EXPECT_EQ(map.at(columns), 1.1);
   EXPECT_EQ(as_shell(cloth->bodies[0])->stretch_limit(), 1.2) << "the largest";
+}
+
+TEST_F(Maps, TakeImagesByTextureCoordinates) {
+  Image image(2, 1, {0, 0, 0});
+  for (int c = 0; c < 3; ++c) image.pixel(1, 0)[c] = 255;
+  write_png(scratch_.path() / "paint.png", image);
+  const std::string painted = "mass_damping = { map = 'paint.png', from = 1, to = 3 }";
+  EXPECT_THAT(complaint(painted),
+              HasSubstr("is an image, but vertex 0 of body `strip`, counted from 0, has no "
+                        "texture coordinates"));
+  test::add_flat_uvs(sheet_);  // u is x
+  const auto cloth = model(shell + painted + " }");
+  const MappedNumber& map = cloth->bodies[0].maps.front();
+  EXPECT_NEAR(map.at(0), 1, 1e-12);
+  EXPECT_NEAR(map.at(columns / 2), 2, 1e-12) << "between the centres of both pixels";
+  EXPECT_NEAR(map.at(columns), 3, 1e-12);
+  sheet_.uvs[3].x() = 1.5;
+  EXPECT_THAT(complaint(painted),
+              HasSubstr("does not reach vertex 3, counted from 0, at the texture coordinates (1.5, 0)"));
+  write("broken.png", "P5 2 1");
+  EXPECT_THAT(complaint("mass_damping = { map = 'broken.png', from = 1, to = 3 }"),
+              HasSubstr("the map `broken.png`: it is no PNG picture"));
+  EXPECT_THAT(complaint("mass_damping = { map = 'none.png', from = 1, to = 3 }"), HasSubstr("cannot read"));
 }
 
 TEST_F(Maps, LetNumbersThatFollowFromOthersFollowEverywhere) {

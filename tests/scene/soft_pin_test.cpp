@@ -2,10 +2,13 @@
 // threads; the report of what pins hold; errors.
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "cache/scratch.hpp"
 #include "support/sheet.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -71,6 +74,51 @@ std::string message(const std::string& pins, const std::string& more = "") {
     return error.what();
   }
   return "no error";
+}
+
+TEST(SoftPinRun, WeightsShareTheStiffness) {
+  const std::string hand = "[[pin]]\nname = 'hand'\nstiffness = 2\ndamping = 0.1\n" + everywhere;
+  const auto plain = sheet(hand), whole = sheet(hand + "weight = 1\n"), half = sheet(hand + "weight = 0.5\n");
+  EXPECT_EQ(plain->pins[0].stiffness, whole->pins[0].stiffness);
+  for (std::size_t k = 0; k < plain->pins[0].stiffness.size(); ++k) {
+    EXPECT_EQ(half->pins[0].stiffness[k], 0.5 * plain->pins[0].stiffness[k]);
+    EXPECT_EQ(half->pins[0].damping[k], 0.5 * plain->pins[0].damping[k]);
+  }
+  EXPECT_NEAR(centre(after(half, 90)).y(), -mass * g / 1, 1e-3 * mass * g);
+}
+
+TEST(SoftPinRun, WeightsVaryByAMap) {
+  test::Scratch scratch;
+  const auto pinned = [&](const std::string& body, const char* to) {
+    Scene scene =
+        parse_scene("[time]\nduration = 1\n[[body]]\nname = 'cloth'\nmesh = 'sheet'\ncontact = false\n" +
+                        body + "[[pin]]\nstiffness = 2\n" + everywhere +
+                        "weight = { map = 'ramp.csv', from = 0, to = " + to + " }\n",
+                    scratch.path() / "scene.toml");
+    auto mesh = std::make_shared<Mesh>(test::flat_sheet(4, 2, 0.2, 0.1));
+    std::ofstream ramp(scratch.path() / "ramp.csv");
+    for (const Vec3& p : mesh->positions) ramp << p.x() / 0.2 << '\n';
+    ramp.close();
+    scene.meshes["sheet"] = std::move(mesh);
+    return build_model(scene);
+  };
+  const std::string shell =
+      "model = 'shell'\nmaterial = { areal_density = 0.1, membrane_warp = 200, bending_warp = 1e-4 }\n";
+  const Model cloth = pinned(shell, "1");
+  const Pin& pin = cloth.pins[0];
+  ASSERT_EQ(pin.vertices.size(), 12u) << "three vertices have no weight";
+  for (std::size_t k = 0; k < pin.vertices.size(); ++k) {
+    const auto v = static_cast<std::size_t>(pin.vertices[k]);
+    EXPECT_NEAR(pin.stiffness[k] / pin.stiffness.back(),
+                cloth.rest_positions[v].x() / 0.2 * cloth.masses[v] / cloth.masses.back(), 1e-12);
+  }
+  const Model block = pinned(
+      "thickness = 0.05\nvoxel_width = 0.05\nmaterial = { density = 90, edge_modulus = 3000, "
+      "face_diagonal_modulus = 700 }\n",
+      "1");
+  for (const int v : block.pins[0].vertices)
+    EXPECT_GT(block.rest_positions[static_cast<std::size_t>(v)].x(), 0.01);
+  EXPECT_THROW(pinned(shell, "0"), Error);
 }
 
 TEST(SoftPinRun, SpringOfStiffnessKGivesWayByTheWeightOverKAtAnyResolution) {
@@ -175,6 +223,7 @@ TEST(SoftPinRun, ResumesAndRunsOnAnyNumberOfThreadsWithTheSameBits) {
 TEST(SoftPinRun, WrongKeysAreErrors) {
   EXPECT_THAT(message("[[pin]]\nstiffness = 1\ntime = 1\n" + row), HasSubstr("both say how hard"));
   EXPECT_THAT(message("[[pin]]\ndamping = 1\n" + row), HasSubstr("stiffness"));
+  EXPECT_THAT(message("[[pin]]\nweight = 0.5\n" + row), HasSubstr("only a soft pin has a weight"));
   EXPECT_THAT(message("[[pin]]\nstiffness = 0\n" + row), HasSubstr("stiffness"));
   EXPECT_THAT(message("[[pin]]\nkeyframes = [{ time = 0, scale = 0 }]\n" + row), HasSubstr("scale"));
   EXPECT_THAT(message("[[pin]]\nstiffness = 1\n" + row,

@@ -8,9 +8,11 @@
 #include <fmt/format.h>
 
 #include "muslin/core/hash.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/core/nearest_name.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/geometry/closest_point.hpp"
+#include "muslin/io/grey_image.hpp"
 #include "muslin/io/number_file.hpp"
 
 namespace muslin {
@@ -18,9 +20,8 @@ namespace {
 
 class MapReader {
  public:
-  MapReader(const schema::Variation& variation, const std::vector<VertexAttribute>& attributes,
-            const ComponentInputs& inputs, const Component& component)
-      : variation_(variation), attributes_(attributes), inputs_(inputs), component_(component) {}
+  MapReader(const schema::Variation& variation, const SceneFiles& files, const Component& component)
+      : variation_(variation), files_(files), component_(component) {}
 
   std::vector<double> weights() const {
     std::vector<double> weights = values();
@@ -42,33 +43,64 @@ class MapReader {
   }
 
  private:
+  /// Reads the file of the map. `remedy` replaces that of a malformed file, unless it is null.
+  template <class Read>
+  auto in_file(const Read& read, const char* remedy) const {
+    try {
+      return read(files_.resolve(variation_.map));
+    } catch (const Error& error) {
+      const Place& place = error.place();
+      const std::string line = place.line > 0 ? fmt::format(" line {}:", place.line) : "";
+      throw Error(error.kind(), variation_.place,
+                  fmt::format("the map `{}`:{} {}", variation_.map, line, error.problem()),
+                  error.kind() == ErrorKind::input && remedy != nullptr ? remedy : error.remedy());
+    }
+  }
+
   std::vector<double> values() const {
-    if (is_number_file(variation_.map)) return from_file();
-    for (const VertexAttribute& attribute : attributes_)
+    if (is_number_file(variation_.map))
+      return in_file([this](const auto& path) { return read_numbers(path); },
+                     "give one finite number for each vertex, a line each in .csv");
+    if (is_image_file(variation_.map))
+      return from_image(in_file([](const auto& path) { return read_grey_image(path); }, nullptr));
+    const std::vector<VertexAttribute>& attributes = component_.attributes;
+    for (const VertexAttribute& attribute : attributes)
       if (attribute.name == variation_.map) return attribute.values;
     for (const MeshGroup& group : component_.mesh.groups)
       if (group.name == variation_.map) return from_group(group);
     std::vector<std::string> names;
-    names.reserve(attributes_.size() + component_.mesh.groups.size());
-    for (const VertexAttribute& attribute : attributes_) names.push_back(attribute.name);
+    names.reserve(attributes.size() + component_.mesh.groups.size());
+    for (const VertexAttribute& attribute : attributes) names.push_back(attribute.name);
     for (const MeshGroup& group : component_.mesh.groups) names.push_back(group.name);
     refuse(fmt::format("is no attribute or group of the mesh of body `{}`", component_.name),
            names.empty() ? "the mesh has none; name a .csv or .npy file with a number for each vertex"
                          : name_advice(variation_.map, names));
   }
 
-  std::vector<double> from_file() const {
-    try {
-      return read_numbers(inputs_.files.resolve(variation_.map));
-    } catch (const Error& error) {
-      const Place& place = error.place();
-      const std::string line = place.line > 0 ? fmt::format(" line {}:", place.line) : "";
-      throw Error(error.kind(), variation_.place,
-                  fmt::format("the map `{}`:{} {}", variation_.map, line, error.problem()),
-                  error.kind() == ErrorKind::input
-                      ? "give one finite number for each vertex, a line each in .csv"
-                      : error.remedy());
+  /// The mean over the corners of each vertex, which differ on a seam.
+  std::vector<double> from_image(const GreyImage& image) const {
+    const Mesh& mesh = component_.mesh;
+    std::vector<double> sums(mesh.vertex_count(), 0.0), corners(mesh.vertex_count(), 0.0);
+    for (std::size_t c = 0; c < mesh.face_vertices.size(); ++c) {
+      const int vertex = mesh.face_vertices[c];
+      const int index = c < mesh.corner_uvs.size() ? mesh.corner_uvs[c] : -1;
+      if (index < 0)
+        refuse(
+            fmt::format("is an image, but vertex {} of body `{}`, counted from 0, has no texture coordinates",
+                        vertex, component_.name),
+            "unwrap the mesh in the modeller");
+      const Vec2& uv = mesh.uvs[at(index)];
+      if (!(uv.minCoeff() >= 0 && uv.maxCoeff() <= 1))
+        refuse(fmt::format(
+                   "does not reach vertex {}, counted from 0, at the texture coordinates ({:.4g}, {:.4g})",
+                   vertex, uv.x(), uv.y()),
+               "move the islands into the unit square");
+      sums[at(vertex)] += image.at(uv);
+      ++corners[at(vertex)];
     }
+    for (std::size_t v = 0; v < sums.size(); ++v)
+      if (corners[v] > 0) sums[v] /= corners[v];
+    return sums;
   }
 
   std::vector<double> from_group(const MeshGroup& group) const {
@@ -84,37 +116,35 @@ class MapReader {
   }
 
   const schema::Variation& variation_;
-  const std::vector<VertexAttribute>& attributes_;
-  const ComponentInputs& inputs_;
+  const SceneFiles& files_;
   const Component& component_;
 };
 
 }  // namespace
 
 std::vector<MappedNumber> read_maps(const schema::Variations& variations, const schema::Table& keys,
-                                    const std::vector<VertexAttribute>& attributes,
-                                    const ComponentInputs& inputs, const Component& component) {
+                                    const SceneFiles& files, const Component& component) {
   std::vector<MappedNumber> maps;
   for (std::size_t i = 0; i < variations.size(); ++i) {
     const schema::Variation& variation = variations[i];
     if (!variation.is_map()) continue;
     const schema::Key& key = *keys.find(variation.key);
-    maps.push_back({variation, key.unit, i, MapReader(variation, attributes, inputs, component).weights(),
-                    key.may_change_on_resume});
+    maps.push_back(
+        {variation, key.unit, i, MapReader(variation, files, component).weights(), key.may_change_on_resume});
   }
   return maps;
 }
 
-std::vector<MappedNumber> over_lattice(const std::vector<MappedNumber>& maps, const Mesh& mesh,
-                                       const Lattice& lattice) {
+std::vector<MappedNumber> over_points(const std::vector<MappedNumber>& maps, const Mesh& mesh,
+                                      const std::vector<Vec3>& points) {
   std::vector<MappedNumber> result = maps;
   if (maps.empty()) return result;
   const std::vector<Vec3i> triangles = triangulate(mesh).triangles;
   const ClosestPointQuery nearest(mesh.positions, triangles);
-  for (MappedNumber& map : result) map.weights.resize(lattice.vertex_count());
-  parallel_for(lattice.vertex_count(), 256, [&](std::size_t begin, std::size_t end) {
+  for (MappedNumber& map : result) map.weights.resize(points.size());
+  parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const ClosestPoint at = nearest(lattice.rest_position(v));
+      const ClosestPoint at = nearest(points[v]);
       const Vec3i& corners = triangles[static_cast<std::size_t>(at.triangle)];
       for (std::size_t m = 0; m < maps.size(); ++m) {
         double weight = 0;

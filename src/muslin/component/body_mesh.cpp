@@ -21,7 +21,8 @@ void warn_of_body(const ComponentInputs& inputs, const std::string& body, const 
   inputs.warnings.push_back(fmt::format("body {}: {}", body, sentence));
 }
 
-MeshFile read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, Component& component) {
+std::vector<MeshGroup> read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs,
+                                      Component& component) {
   component.name = settings.name;
   inputs.progress.at(0.0, "mesh");
   const std::string file = inputs.files.resolve(settings.mesh).string();
@@ -29,12 +30,13 @@ MeshFile read_body_mesh(const BodySettings& settings, const ComponentInputs& inp
     MeshFile read = inputs.files.mesh(settings.mesh);
     if (!read.note.empty()) warn_of_body(inputs, settings.name, read.note);
     component.mesh = std::move(read.mesh);
+    component.attributes = std::move(read.attributes);
     const auto place = placement(settings.translate, settings.rotate, settings.scale);
     for (Vec3& x : component.mesh.positions) x = place * x;
     require_usable(component.mesh, file);
     component.report = inspect(component.mesh);
     for (const std::string& warning : component.report.warnings) warn_of_body(inputs, settings.name, warning);
-    return read;
+    return std::move(read.materials);
   });
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "muslin/component/body_settings.hpp"
 #include "muslin/component/component.hpp"
@@ -27,9 +28,10 @@ auto at_place(const Place& place, const std::string& file, const Build& build) -
 /// Appends a sentence about a body to the warnings.
 void warn_of_body(const ComponentInputs& inputs, const std::string& body, const std::string& sentence);
 
-/// Fills in name, mesh and report of a component, the mesh placed in the world. Returns what else the file
-/// has. Errors: input and file, with the place in the scene and the mesh file.
-MeshFile read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, Component& component);
+/// Fills in name, mesh, attributes and report of a component, the mesh placed in the world. Returns the
+/// materials of the file. Errors: input and file, with the place in the scene and the mesh file.
+std::vector<MeshGroup> read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs,
+                                      Component& component);
 
 /// Continues a hash with what a saved state must fit of a material, its density and law, and with a number of
 /// the kind's own, or 0. Stiffness and damping may change on a resume.

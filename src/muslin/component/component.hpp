@@ -30,6 +30,7 @@
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/inspect.hpp"
 #include "muslin/geometry/mesh.hpp"
+#include "muslin/io/mesh_file.hpp"
 #include "muslin/lattice/embedding.hpp"
 #include "muslin/potential/state.hpp"
 #include "muslin/solver/solver.hpp"
@@ -87,7 +88,8 @@ class MUSLIN_API Component {
   int first_vertex = 0;  ///< its vertices are first_vertex … first_vertex + vertex_count − 1 of the state
   int vertex_count = 0;
   BodyStatistics statistics;
-  std::vector<MappedNumber> maps;  ///< numbers that vary over the vertices of `mesh`
+  std::vector<VertexAttribute> attributes;  ///< numbers painted on `mesh`, which maps name
+  std::vector<MappedNumber> maps;           ///< numbers that vary over the vertices of `mesh`
   /// Over its vertices; in output their names follow the component's. Potentials are added to the solver's
   /// list in this order.
   std::vector<PotentialTerm> potentials;

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "muslin/component/body_maps.hpp"
 #include "muslin/constraint/soft_pin.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/scene/pin_sequence.hpp"
+#include "muslin/scene/pin_table.hpp"
 
 namespace muslin {
 namespace {
@@ -28,9 +32,41 @@ Vec3 centre_of(const Model& model, const std::vector<int>& vertices) {
 /// left with critical damping, is 1 %.
 constexpr double settled = 6.638;
 
+/// Returns the weight of each vertex of a pin.
+std::vector<double> weights_of(const Model& model, const PinSettings& settings, const Component& body,
+                               const Pin& pin) {
+  std::vector<double> weights(pin.vertices.size(), settings.weight);
+  std::vector<MappedNumber> maps =
+      read_maps(settings.variations, pin_table(), {model.scene.file, model.scene.meshes}, body);
+  if (maps.empty()) return weights;
+  std::vector<Vec3> points;
+  for (const int v : pin.vertices) points.push_back(model.rest_positions[at(v)]);
+  if (!body.is_mesh()) maps = over_points(maps, body.mesh, points);
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    weights[k] = maps.front().at(body.is_mesh() ? at(pin.vertices[k] - body.first_vertex) : k);
+  return weights;
+}
+
+/// Lets vertices without weight go.
+void drop_weightless(const PinSettings& settings, Pin& pin, std::vector<double>& weights) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (weights[k] == 0) continue;
+    pin.vertices[kept] = pin.vertices[k];
+    weights[kept++] = weights[k];
+  }
+  pin.vertices.resize(kept);
+  weights.resize(kept);
+  if (kept == 0)
+    throw Error(ErrorKind::input, settings.place,
+                fmt::format("pin {}: its `weight` is 0 at every vertex", pin.name),
+                "raise it somewhere, or remove the pin");
+}
+
 /// Shares the stiffness and damping of a soft pin among its vertices, by their masses: the pin pulls as hard
 /// at any resolution of the mesh.
-void soften(const Model& model, const PinSettings& settings, const Component& body, Pin& pin) {
+void soften(const Model& model, const PinSettings& settings, const Component& body,
+            std::span<const double> weights, Pin& pin) {
   double stiffness = settings.stiffness.value_or(0), damping = settings.damping;
   if (settings.time) {
     const double rate = settled / *settings.time;
@@ -39,8 +75,8 @@ void soften(const Model& model, const PinSettings& settings, const Component& bo
   }
   double mass = 0;
   for (const int v : pin.vertices) mass += model.masses[static_cast<std::size_t>(v)];
-  for (const int v : pin.vertices) {
-    const double share = model.masses[static_cast<std::size_t>(v)] / mass;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const double share = weights[k] * model.masses[at(pin.vertices[k])] / mass;
     pin.stiffness.push_back(stiffness * share);
     pin.damping.push_back(damping * share);
   }
@@ -54,6 +90,8 @@ void build_pins(Model& model) {
     Pin pin;
     pin.name = settings.name;
     pin.vertices = to_model(body, body.held_vertices(settings.where, "pin " + settings.name));
+    std::vector<double> weights = weights_of(model, settings, body, pin);
+    drop_weightless(settings, pin, weights);
     pin.from = settings.from;
     pin.until = settings.until;
     pin.motion = settings.motion;
@@ -64,7 +102,7 @@ void build_pins(Model& model) {
         throw Error(ErrorKind::input, settings.place,
                     fmt::format("pin {}: symplectic_euler does not support soft pins", pin.name),
                     "choose an implicit integrator");
-      soften(model, settings, body, pin);
+      soften(model, settings, body, weights, pin);
       model.loads.push_back({pin.name, EnergyRole::support, std::make_shared<SoftPin>(pin)});
     }
     model.pins.push_back(std::move(pin));

@@ -30,7 +30,13 @@ std::vector<schema::Key> softness_keys() {
               .range({0, 1e9, false})
               .shown_if<PinSettings>([](const PinSettings& pin) { return pin.stiffness.has_value(); })
               .needs("stiffness", "only a soft pin is damped: give its `stiffness`")
-              .means("of the whole pin, against motion relative to the target")};
+              .means("of the whole pin, against motion relative to the target"),
+          schema::number("weight", &PinSettings::weight)
+              .range(Range::between(0, 1))
+              .varies(&PinSettings::variations, {.map = true})
+              .shown_if<PinSettings>([](const PinSettings& pin) { return pin.is_soft(); })
+              .means("of a soft pin at each vertex, as a factor of stiffness and damping; where it is 0 the "
+                     "vertex is free")};
 }
 
 schema::Table declare_pin() {
@@ -64,6 +70,8 @@ schema::Table declare_pin() {
                                                        .means("motion: a list of tables; times ascend")));
   schema::add_rule<PinSettings>(table, [](const PinSettings& pin, const schema::Subject& subject) {
     check_window(pin.from, pin.until, subject);
+    if (!pin.is_soft() && (pin.weight != 1 || !pin.variations.empty()))
+      throw subject.error("weight", "only a soft pin has a weight", "give its `stiffness` or `time`");
   });
   return table;
 }
@@ -82,6 +90,8 @@ void finish_pin(const TomlTable& table, std::size_t index, PinSettings& pin, con
     if (!table.has("where")) refuse_without_selection(table);
   } else if (table.has("where")) {
     throw table.error("where", "a rigid body is held as a whole", "take `where` out");
+  } else if (!pin.variations.empty()) {
+    throw table.error("weight", "a rigid body is held as a whole, not by a map", "give a number");
   } else if (table.has("sequence")) {
     throw table.error("sequence", "a rigid body does not follow a sequence", "move it by `keyframes`");
   } else if (pin.motion.scales()) {

@@ -41,11 +41,11 @@ class LatticeBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    const std::vector<VertexAttribute> attributes = read_body_mesh(settings_, inputs_, body_).attributes;
+    read_body_mesh(settings_, inputs_, body_);
     make_solid();
     at_place(settings_.place, inputs_.files.resolve(settings_.mesh).string(),
              [&] { fill(inputs_.progress); });
-    vary_material(attributes);
+    vary_material();
     weigh(body_);
     add_lattice_terms(body_);
     return built_;
@@ -132,15 +132,17 @@ class LatticeBuilder {
     }
   }
 
-  void vary_material(const std::vector<VertexAttribute>& attributes) {
-    body_.maps =
-        read_maps(settings_.material.variations, lattice_material_table(), attributes, inputs_, body_);
+  void vary_material() {
+    body_.maps = read_maps(settings_.material.variations, lattice_material_table(), inputs_.files, body_);
     const MappedNumber* damping = find_map(body_.maps, "stiffness_damping");
     if (damping != nullptr && settings_.material.has_springs())
       throw Error(ErrorKind::input, damping->variation.place,
                   "`stiffness_damping` of springs cannot vary by a map",
                   "give a number, which damps in proportion to the moduli, or a solid by `law`");
-    body_.vertex_maps = over_lattice(body_.maps, body_.mesh, body_.lattice);
+    std::vector<Vec3> vertices;
+    for (std::size_t v = 0; v < body_.lattice.vertex_count(); ++v)
+      vertices.push_back(body_.lattice.rest_position(v));
+    body_.vertex_maps = over_points(body_.maps, body_.mesh, vertices);
   }
 
   const BodySettings& settings_;

@@ -10,6 +10,7 @@
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/placement.hpp"
 #include "muslin/component/shell/shell_body.hpp"
+#include "muslin/component/shell/shell_kind.hpp"
 #include "muslin/core/counted.hpp"
 #include "muslin/core/index.hpp"
 #include "muslin/material/keyed_material.hpp"
@@ -33,12 +34,12 @@ class ShellBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    const MeshFile read = read_body_mesh(settings_, inputs_, body_);
-    const std::vector<int> fabric_of_face = lay_fabrics(read.materials);
+    const std::vector<int> fabric_of_face = lay_fabrics(read_body_mesh(settings_, inputs_, body_));
+    body_.maps = read_maps(own_.variations, shell_kind.keys(), inputs_.files, body_);
     const Mesh rest = rest_mesh();
     at_place(settings_.mesh_place, file_, [&] { make_shell(rest); });
     for (const int face : body_.shell.faces) body_.triangle_fabrics.push_back(fabric_of_face[at(face)]);
-    vary_material(read.attributes);
+    vary_material();
     weigh(body_);
     return built_;
   }
@@ -121,7 +122,9 @@ class ShellBuilder {
     }
     body_.sheet = true;
     body_.shell = build_shell(body_.mesh, rest.positions, weave);
-    scale_rest(body_.shell, own_.rest_scale());
+    body_.woven_areas = body_.shell.areas;
+    body_.woven_vertex_areas = body_.shell.vertex_areas;
+    scale_rest(body_.shell, [this](std::span<const int> vertices) { return body_.rest_scale(vertices, 0); });
     if (body_.shell.odd_faces > 0) {
       say(fmt::format(
           "{} triangles stand across the warp, which has no direction there; unwrap the mesh or choose "
@@ -138,17 +141,16 @@ class ShellBuilder {
     s.hinges = static_cast<std::int64_t>(body_.shell.hinges.size());
   }
 
-  void vary_material(const std::vector<VertexAttribute>& attributes) {
+  void vary_material() {
     for (FabricInUse& fabric : body_.fabrics) {
-      fabric.maps =
-          read_maps(fabric.numbers().variations, shell_material_table(), attributes, inputs_, body_);
+      fabric.maps = read_maps(fabric.numbers().variations, shell_material_table(), inputs_.files, body_);
       for (MappedNumber map : fabric.maps) {
         if (body_.has_several_fabrics()) map.variation.key = fabric.name + "." + map.variation.key;
         body_.maps.push_back(std::move(map));
       }
       check_maps(fabric);
     }
-    if (body_.maps.empty() && !body_.has_several_fabrics()) return;
+    if (body_.fabrics.front().maps.empty() && !body_.has_several_fabrics()) return;
     body_.triangle_materials = body_.materials_of_triangles(0);
     check_triangles(body_.triangle_materials, "");
     for (const FabricInUse& fabric : body_.fabrics)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@
 #include "muslin/material/keyed_material.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/material/varied_material.hpp"
+#include "muslin/shell/rest_scale.hpp"
 
 namespace muslin {
 namespace {
@@ -98,10 +100,29 @@ TrustedEdge ShellBody::shortest_trusted_edge() const {
   return shortest;
 }
 
+Vec2 ShellBody::rest_scale(std::span<const int> vertices, double at_time) const {
+  const ShellBodySettings& o = own();
+  const auto scale = [&](const char* key, double number) {
+    const MappedNumber* map = find_map(maps, key);
+    return map != nullptr ? map->mean(vertices) : number;
+  };
+  const Vec2 whole(scale("rest_scale_warp", o.rest_scale_warp),
+                   scale("rest_scale_weft", o.rest_scale_weft.value_or(o.rest_scale_warp)));
+  const schema::Variation* keyed = schema::find_variation(o.variations, "rest_scale_share");
+  const double share = keyed != nullptr ? value_at(keyed->keyframes, at_time) : o.rest_scale_share;
+  return share == 1 ? whole : Vec2(Vec2::Ones() + share * (whole - Vec2::Ones()));
+}
+
+Shell ShellBody::shell_at(double at_time) const {
+  Shell result = shell;
+  scale_rest(result, [&](std::span<const int> vertices) -> Vec2 {
+    return rest_scale(vertices, at_time).cwiseQuotient(rest_scale(vertices, time));
+  });
+  return result;
+}
+
 template <class Visit>
 void ShellBody::for_each_share(const Visit& visit) const {
-  // Cloth that shrinks keeps its mass.
-  const double third = 1 / (3 * own().rest_scale().prod());
   std::vector<const MappedNumber*> densities;
   for (const FabricInUse& fabric : fabrics) densities.push_back(find_map(fabric.maps, "areal_density"));
   for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
@@ -109,7 +130,7 @@ void ShellBody::for_each_share(const Visit& visit) const {
     for (const int v : shell.triangles[t]) {
       const double density =
           densities[f] != nullptr ? densities[f]->at(at(v)) : fabrics[f].numbers().areal_density;
-      visit(t, at(v), density * third * shell.areas[t]);
+      visit(t, at(v), density * woven_areas[t] / 3);
     }
   }
 }
@@ -122,7 +143,7 @@ std::vector<double> ShellBody::fabric_masses() const {
 
 std::vector<double> ShellBody::fabric_areas() const {
   std::vector<double> areas(fabrics.size(), 0.0);
-  for (std::size_t t = 0; t < shell.areas.size(); ++t) areas[at(triangle_fabrics[t])] += shell.areas[t];
+  for (std::size_t t = 0; t < shell.areas.size(); ++t) areas[at(triangle_fabrics[t])] += woven_areas[t];
   return areas;
 }
 
@@ -140,12 +161,10 @@ std::vector<double> ShellBody::masses() const {
     for_each_share([&](std::size_t, std::size_t v, double share) { masses[v] += share; });
     return masses;
   }
-  // Cloth that shrinks keeps its mass.
-  const double scale = own().rest_scale().prod(), density = material().areal_density / scale;
-  std::vector<double> masses = shell.vertex_areas;
+  std::vector<double> masses = woven_vertex_areas;
   const MappedNumber* mapped = find_map(maps, "areal_density");
   for (std::size_t v = 0; v < masses.size(); ++v)
-    masses[v] *= mapped != nullptr ? mapped->at(v) / scale : density;
+    masses[v] *= mapped != nullptr ? mapped->at(v) : material().areal_density;
   return masses;
 }
 
@@ -171,7 +190,7 @@ double ShellBody::mean_modulus() const {
   const std::vector<double> areas = fabric_areas();
   double sum = 0;
   for (std::size_t f = 0; f < fabrics.size(); ++f) sum += areas[f] * modulus(fabrics[f].numbers());
-  return sum / shell.area;
+  return sum / std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
 std::optional<ContactPart> ShellBody::contact_part() const {
@@ -265,13 +284,13 @@ std::string ShellBody::description_of(std::size_t fabric) const {
   const SheetStress stress = stress_of(m);
   const SheetMoments moments = moments_of(m);
   std::string text;
-  double mass = statistics.mass, area = shell.area;
+  double mass = statistics.mass;
   if (has_several_fabrics()) {
     text = fmt::format("  fabric      {}\n", of.name);
-    mass = fabric_masses()[fabric], area = fabric_areas()[fabric];
+    mass = fabric_masses()[fabric];
   }
   text += fmt::format("  mass        {:.6g} kg of {}, {:.4g} kg/m² on {:.6g} m²\n", mass, of.material.name,
-                      m.areal_density, area / own().rest_scale().prod());
+                      m.areal_density, fabric_areas()[fabric]);
   text += fmt::format(
       "  stiffness   warp {:.4g}, weft {:.4g}, shear {:.4g} N/m; bending {:.3g}, {:.3g}, bias "
       "{:.3g} N·m\n",

@@ -25,7 +25,10 @@ namespace muslin {
 class ShellBody final : public Component {
  public:
   BodySettings settings;  ///< with numbers of a shell in `material`
-  Shell shell;
+  Shell shell;            ///< with the rest lengths of `time`
+  double time = 0;        ///< [s]
+  /// Areas of its triangles and vertices before it shrinks or grows, which leaves its mass, #T and #V [m²].
+  std::vector<double> woven_areas, woven_vertex_areas;
   std::shared_ptr<const SymmetricPattern> pattern;  ///< of the pairs of vertices that terms couple
   std::vector<FabricInUse> fabrics;   ///< at least one; the first has the material of `settings`
   std::vector<int> triangle_fabrics;  ///< #T, index into `fabrics`
@@ -55,7 +58,12 @@ class ShellBody final : public Component {
   /// The numbers of its material. Errors: usage, if the material has none of shells.
   const ShellMaterial& material() const;
   bool has_several_fabrics() const { return fabrics.size() > 1; }
-  /// Returns the mass of each fabric [kg] and its area at rest [m²].
+  /// Returns the rest lengths along warp and weft over those of the mesh, where the mean weight of maps is
+  /// that of some vertices, at a time [s].
+  Vec2 rest_scale(std::span<const int> vertices, double at_time) const;
+  /// Returns the shell at a time [s].
+  Shell shell_at(double at_time) const;
+  /// Returns the mass of each fabric [kg] and its area before it shrinks or grows [m²].
   std::vector<double> fabric_masses() const;
   std::vector<double> fabric_areas() const;
   /// Returns the coefficients of mass damping of the vertices, Σ α m over the triangles around each, #V

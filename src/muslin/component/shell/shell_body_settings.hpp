@@ -8,6 +8,7 @@
 #include "muslin/component/shell/shell_fabric.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
+#include "muslin/schema/variation.hpp"
 
 namespace muslin {
 
@@ -23,12 +24,12 @@ struct ShellBodySettings {
   std::optional<Vec3> warp;
   double rest_scale_warp = 1;             ///< rest length over that of the mesh or the rest mesh
   std::optional<double> rest_scale_weft;  ///< default: as warp
+  double rest_scale_share = 1;            ///< of the change of rest lengths that has come about
+  schema::Variations variations;          ///< of the three numbers before
   Compression compression = Compression::buckling;
   std::optional<double> stretch_limit;  ///< of length to rest length in every direction; default: none
 
   std::vector<ShellFabric> fabrics;  ///< of faces that do not have the material of the body
-
-  Vec2 rest_scale() const { return {rest_scale_warp, rest_scale_weft.value_or(rest_scale_warp)}; }
 };
 
 }  // namespace muslin

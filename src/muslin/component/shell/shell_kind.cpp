@@ -112,11 +112,23 @@ const schema::Table& keys() {
            .means("a mesh with the same polygons in the stress-free shape; `scale` applies to it"),
        schema::number("rest_scale_warp", &Own::rest_scale_warp)
            .range({0.01, 100, false})
+           .varies(&Own::variations, {.map = true})
            .means("stress-free length along warp over that of the mesh: below 1 the cloth shrinks"),
        schema::number("rest_scale_weft", &Own::rest_scale_weft)
            .range({0.01, 100, false})
+           .varies(&Own::variations, {.map = true})
            .otherwise("as warp")
            .means("stress-free length along weft over that of the mesh"),
+       schema::number("rest_scale_share", &Own::rest_scale_share)
+           .range(Range::between(0, 1))
+           .varies(&Own::variations, {.keyframes = true})
+           .shown_if<Own>([](const Own& own) {
+             return own.rest_scale_share != 1 ||
+                    schema::find_variation(own.variations, "rest_scale_share") != nullptr;
+           })
+           .means(
+               "share of the change to `rest_scale_warp` and `rest_scale_weft` that has come about: from 0 "
+               "to 1 over time the cloth dries"),
        schema::direction("warp", &Own::warp, "[1, 0, 0]")
            .otherwise("see below")
            .means("direction of the warp threads in the mesh as modelled"),
@@ -163,6 +175,10 @@ void finish(const TomlTable& table, const std::filesystem::path& folder, BodySet
   body.material = material_of(material_use, table, body, folder);
   read_fabrics(table, folder, body);
   auto& own = body.own.as<Own>();
+  if (!own.rest_scale_weft && schema::find_variation(own.variations, "rest_scale_warp") != nullptr) {
+    own.rest_scale_weft = own.rest_scale_warp;
+    schema::copy_variation(own.variations, "rest_scale_warp", "rest_scale_weft");
+  }
   const bool given = own.stretch_limit.has_value(), several = !own.fabrics.empty();
   const auto complete = [&](Material& material, const std::string& title) {
     if (!material.shell) return;

@@ -215,7 +215,7 @@ class ShellTerms {
 }  // namespace
 
 void ShellBody::add_terms(std::span<const std::uint8_t> held) {
-  schema::Variations variations;
+  schema::Variations variations = own().variations;
   for (const FabricInUse& fabric : fabrics)
     variations.insert(variations.end(), fabric.numbers().variations.begin(),
                       fabric.numbers().variations.end());
@@ -232,7 +232,10 @@ void ShellBody::add_terms(std::span<const std::uint8_t> held) {
                         at_time->vertex_count = vertex_count;
                         at_time->statistics = statistics;
                         at_time->settings = settings;
-                        at_time->shell = shell;
+                        at_time->shell = shell_at(time);
+                        at_time->time = time;
+                        at_time->woven_areas = woven_areas;
+                        at_time->woven_vertex_areas = woven_vertex_areas;
                         at_time->maps = maps;
                         at_time->fabrics = fabrics;
                         for (FabricInUse& fabric : at_time->fabrics)
