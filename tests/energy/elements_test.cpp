@@ -15,6 +15,8 @@
 #include "muslin/energy/bending_friction.hpp"
 #include "muslin/energy/measured_membrane.hpp"
 #include "muslin/energy/membrane_energy.hpp"
+#include "muslin/energy/plastic_membrane.hpp"
+#include "muslin/energy/plastic_springs.hpp"
 #include "muslin/energy/shell_bending.hpp"
 #include "muslin/energy/solid_laws.hpp"
 #include "muslin/energy/stretch_limit.hpp"
@@ -142,6 +144,31 @@ Case plastic_hinges() {
   return c;
 }
 
+/// The energy of a first step, in which no thread, one or both yield.
+Case plastic_membrane() {
+  return of_sheet(
+      [](const Shell& shell, auto pattern) {
+        const PlasticMembrane load("cloth", shell, {900, 500, 130, 0.25}, {0.05, 0.2}, pattern);
+        std::shared_ptr<const Potential> energy = load.potential(StepContext());
+        return std::dynamic_pointer_cast<const ElementEnergy>(energy);
+      },
+      {scaled(1.3, 1, 1.1), scaled(0.7, 1, 0.8), scaled(1.3, 1, 0.8), scaled(1.02, 1, 1.02)}, 0.005);
+}
+
+/// The energy of a first step, with springs that yield here and there.
+Case plastic_springs() {
+  Lattice lattice = test::box_lattice({3, 2, 2});
+  lattice.width = 0.1;
+  std::vector<Vec3> rest;
+  for (std::size_t v = 0; v < lattice.vertex_count(); ++v) rest.push_back(lattice.rest_position(v));
+  const PlasticSprings load("block", build_springs(lattice, Bracing::kuhn), rest.size(), 0.1, {3e4, 1e4, 5e3},
+                            {}, {0.1, 0.3});
+  std::shared_ptr<const Potential> energy = load.potential(StepContext());
+  return {std::dynamic_pointer_cast<const ElementEnergy>(energy),
+          rest,
+          {mapped(rest, scaled(1.3, 0.95, 1.05), 0.01), mapped(rest, scaled(0.7, 0.95, 1.2), 0.01)}};
+}
+
 /// The energy of a first step: sliders stick, or slip here and there.
 Case bending_friction() {
   Case c = bending();
@@ -266,7 +293,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Pair{"BucklingMeasuredMembraneOnTriangles", buckling_measured_membrane},
                     Pair{"StretchLimitOnTriangles", stretch_limit}, Pair{"ShellBending", bending},
                     Pair{"PlasticHinges", plastic_hinges}, Pair{"BendingFriction", bending_friction},
-                    Pair{"MeasuredBending", measured_bending}),
+                    Pair{"PlasticMembraneOnTriangles", plastic_membrane},
+                    Pair{"PlasticSpringsOnBars", plastic_springs}, Pair{"MeasuredBending", measured_bending}),
     [](const auto& info) { return info.param.name; });
 INSTANTIATE_TEST_SUITE_P(Solids, ElementsBattery, testing::ValuesIn(solids()),
                          [](const auto& info) { return info.param.name; });

@@ -11,8 +11,6 @@ namespace muslin {
 
 template class Elements<TriangleStencil, MembraneLaw>;
 
-namespace {
-
 PlaneModuli plane_moduli(const MembraneModuli& moduli) {
   require(moduli.warp >= 0 && moduli.weft >= 0 && moduli.shear >= 0, "a membrane modulus is negative",
           "give 0 or more");
@@ -26,6 +24,8 @@ PlaneModuli plane_moduli(const MembraneModuli& moduli) {
   constants.g = moduli.shear;
   return constants;
 }
+
+namespace {
 
 std::vector<PlaneModuli> plane_moduli(std::span<const MembraneModuli> moduli) {
   std::vector<PlaneModuli> constants;

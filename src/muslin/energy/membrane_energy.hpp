@@ -36,6 +36,9 @@ struct MembraneModuli {
   double poisson = 0;  ///< ν, geometric mean of both directions, −1 < ν < 1
 };
 
+/// Returns the moduli of stretch and shear in plane stress. Errors: usage, if one is out of its range.
+PlaneModuli plane_moduli(const MembraneModuli& moduli);
+
 extern template class Elements<TriangleStencil, MembraneLaw>;
 
 class MembraneEnergy : public Elements<TriangleStencil, MembraneLaw> {

@@ -21,7 +21,7 @@ struct Material {
   std::string description;
   std::string source;                ///< source of the numbers
   std::vector<std::string> guesses;  ///< numbers that are not measured, such as "shell.bending_warp"
-  bool has_lattice = true;           ///< the next ten settings are valid
+  bool has_lattice = true;           ///< the next twelve settings are valid
   double density = 0;                ///< [kg/m³]
   double edge_modulus = 0;           ///< [N/m²]
   double face_diagonal_modulus = 0;  ///< [N/m²]
@@ -30,6 +30,8 @@ struct Material {
   std::string law = "springs";  ///< of what fills a lattice: springs, or a solid of energy/solid_laws.hpp
   std::optional<double> youngs_modulus;  ///< E of a solid [N/m²]
   double poisson = 0.3;                  ///< ν of a solid
+  std::optional<double> yield_strain;    ///< of springs, beyond which they keep another length
+  double strain_hardening = 0;           ///< stiffness beyond it over that below, 0 … 1
   double mass_damping = 0;               ///< Rayleigh α [1/s]
   double stiffness_damping = 0;          ///< Rayleigh β [s]
   schema::Variations variations;         ///< of those numbers of the lattice that vary

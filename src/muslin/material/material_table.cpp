@@ -46,19 +46,34 @@ Declaration law_key() {
       .means(meaning);
 }
 
-/// Lets the numbers change on a resume that do not decide masses.
+void check_spring_yield(const Material& m, const schema::Subject& subject) {
+  if (!m.yield_strain && m.strain_hardening != 0)
+    throw subject.error("strain_hardening", "springs without `yield_strain` do not yield",
+                        "add the strain from which on they keep another length");
+  if (m.yield_strain && !m.has_springs())
+    throw subject.error("yield_strain", "a solid does not yield", "take law = \"springs\"");
+}
+
+/// Lets the numbers change on a resume that decide neither masses nor the memory of dents.
 schema::Table let_change(schema::Table table) {
   for (schema::Key& key : table.keys) {
-    if (key.name == "density" || key.name == "law") continue;
+    if (key.name == "density" || key.name == "law" || key.name == "yield_strain" ||
+        key.name == "strain_hardening")
+      continue;
     key.may_change_on_resume = true;
   }
+  return table;
+}
+
+schema::Table with_rules(schema::Table table) {
+  schema::add_rule<Material>(table, check_spring_yield);
   return table;
 }
 
 }  // namespace
 
 const schema::Table& lattice_material_table() {
-  static const schema::Table table = let_change(schema::table_of<Material>(
+  static const schema::Table table = let_change(with_rules(schema::table_of<Material>(
       "[lattice]",
       {schema::number("density", &Material::density)
            .unit("kg/m³")
@@ -78,6 +93,16 @@ const schema::Table& lattice_material_table() {
            .range(modulus)
            .varies(&Material::variations, lattice_forms)
            .means("resistance of each voxel to a change of volume; 0 is off"),
+       schema::number("yield_strain", &Material::yield_strain)
+           .range({1e-4, 10, false})
+           .otherwise("it never dents")
+           .means(
+               "of springs: strain, in stretch or compression, beyond which a spring keeps another length: "
+               "released, it keeps what is above it"),
+       schema::number("strain_hardening", &Material::strain_hardening)
+           .range({0, 1, false})
+           .shown_if<Material>([](const Material& m) { return m.yield_strain.has_value(); })
+           .means("stiffness beyond yield over that below"),
        schema::number("mass_damping", &Material::mass_damping)
            .unit("1/s")
            .range(damping)
@@ -101,7 +126,7 @@ const schema::Table& lattice_material_table() {
            .range({-0.99, 0.499, false})
            .needs("law", "springs have a Poisson's ratio of their own; add law = \"neo_hookean\"")
            .shown_if<Material>(is_solid)
-           .means("Poisson's ratio of the solid")}));
+           .means("Poisson's ratio of the solid")})));
   return table;
 }
 

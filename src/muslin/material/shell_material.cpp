@@ -153,12 +153,27 @@ void check_yield(const ShellMaterial& m, const schema::Subject& subject) {
                         "give `bending_warp` more than 0");
 }
 
+void check_strain_yield(const ShellMaterial& m, const schema::Subject& subject) {
+  if (!m.yield_strain) {
+    if (m.strain_hardening != 0)
+      throw subject.error("strain_hardening", "a sheet without `yield_strain` does not yield in stretch",
+                          "add the strain from which on it stays longer");
+    return;
+  }
+  if (has_curves(m))
+    throw subject.error("yield_strain", "a sheet with measured curves of stretch cannot yield",
+                        "give moduli in place of the curves");
+  if (!(m.membrane_warp > 0 && m.membrane_weft > 0))
+    throw subject.error("yield_strain", "a sheet that yields in stretch needs threads that resist it",
+                        "give `membrane_warp` and `membrane_weft` more than 0");
+}
+
 /// Lets the numbers change on a resume that decide neither masses nor the memory of internal friction and of
 /// creases.
 void let_sheet_change(schema::Table& table) {
   for (schema::Key& key : table.keys) {
     if (key.name == "areal_density" || key.name.starts_with("bending_friction") ||
-        key.name.starts_with("yield"))
+        key.name.starts_with("yield") || key.name == "strain_hardening")
       continue;
     key.may_change_on_resume = true;
   }
@@ -281,6 +296,15 @@ schema::Table declared() {
            .range({0, 1e9, true})
            .otherwise("creases stay")
            .means("time in which creases fade to 37 % of themselves, as under an iron"),
+       number("yield_strain", &ShellMaterial::yield_strain)
+           .range({1e-4, 10, false})
+           .otherwise("it never yields")
+           .means("strain of a strip pulled along a thread beyond which the thread stays longer, as a knee "
+                  "bags: released, it keeps what is above it; needs `compression = \"elastic\"`"),
+       number("strain_hardening", &ShellMaterial::strain_hardening)
+           .range({0, 1, false})
+           .shown_if<Sheet>([](const Sheet& m) { return m.yield_strain.has_value(); })
+           .means("stiffness of stretch beyond yield over that below"),
        number("stretch_limit", &ShellMaterial::stretch_limit)
            .range({least_stretch_limit, 10, false})
            .varies(&Sheet::variations, unchanging_shell_forms)
@@ -308,6 +332,7 @@ schema::Table declared() {
   schema::add_rule<ShellMaterial>(table, check_curves);
   schema::add_rule<ShellMaterial>(table, check_bias);
   schema::add_rule<ShellMaterial>(table, check_yield);
+  schema::add_rule<ShellMaterial>(table, check_strain_yield);
   schema::add_rule<ShellMaterial>(table, [](const ShellMaterial& m, const schema::Subject& subject) {
     for (const double time : times_to_check(m.variations)) check_bias(material_at(m, time), subject);
   });

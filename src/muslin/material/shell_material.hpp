@@ -43,6 +43,8 @@ struct ShellMaterial {
   std::optional<double> yield_curvature;  ///< elastic curvature of warp beyond which creases stay [1/m]
   double yield_hardening = 0;             ///< rigidity beyond yield over that below, 0 … 1
   std::optional<double> yield_recovery;   ///< time in which creases fade to 1/e of themselves [s]
+  std::optional<double> yield_strain;     ///< of a pulled thread beyond which it stays longer
+  double strain_hardening = 0;            ///< stiffness beyond it over that below, 0 … 1
   std::optional<double> stretch_limit;              ///< of bodies that have none of their own
   double mass_damping = 0;                          ///< Rayleigh α [1/s]
   double stiffness_damping = 0;                     ///< Rayleigh β of stretch and shear [s]

@@ -15,6 +15,7 @@
 #include "muslin/component/stability_bound.hpp"
 #include "muslin/core/progress_part.hpp"
 #include "muslin/energy/element_energy.hpp"
+#include "muslin/energy/plastic_springs.hpp"
 #include "muslin/energy/solid_laws.hpp"
 #include "muslin/energy/spring_damping.hpp"
 #include "muslin/energy/spring_energy.hpp"
@@ -182,7 +183,15 @@ class LatticeTerms {
     } else {
       const auto springs = std::make_shared<SpringEnergy>(body_.springs, body_.lattice.width, moduli,
                                                           varied(spring_weights()), body_.network);
-      body_.potentials.push_back({"springs", EnergyRole::elastic, springs});
+      if (material.yield_strain) {
+        body_.loads.push_back(
+            {"springs", EnergyRole::elastic,
+             std::make_shared<PlasticSprings>(
+                 body_.name, body_.springs, body_.lattice.vertex_count(), body_.lattice.width, moduli,
+                 varied(spring_weights()), SpringYield{*material.yield_strain, material.strain_hardening})});
+      } else {
+        body_.potentials.push_back({"springs", EnergyRole::elastic, springs});
+      }
       bound.add(*springs, 2, material.stiffness_damping);
       damping = std::make_shared<SpringDamping>(springs, material.stiffness_damping);
     }
@@ -259,6 +268,7 @@ void add_lattice_terms(LatticeBody& body) {
   add_changing_terms(body, {times, [&variations](double time) { return keyed_numbers(variations, time); },
                             [&body](double time) {
                               const auto at_time = std::make_shared<LatticeBody>();
+                              at_time->name = body.name;
                               at_time->statistics = body.statistics;
                               at_time->settings = body.settings;
                               at_time->settings.material = material_at(body.settings.material, time);

@@ -159,8 +159,13 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
 std::uint64_t LatticeBody::shape_hash(std::uint64_t seed) const { return range_hash(seed, springs.count); }
 
 std::uint64_t LatticeBody::material_hash(std::uint64_t seed) const {
-  return maps_hash(
-      maps, muslin::material_hash(settings.material, static_cast<double>(own().boundary_springs), seed));
+  const Material& m = settings.material;
+  std::uint64_t hash = muslin::material_hash(m, static_cast<double>(own().boundary_springs), seed);
+  if (m.yield_strain) {
+    const std::array yield = {*m.yield_strain, m.strain_hardening};
+    hash = hash_bytes(yield.data(), sizeof yield, hash);
+  }
+  return maps_hash(maps, hash);
 }
 
 const LatticeBody* as_lattice(const Component& component) {

@@ -59,6 +59,10 @@ class ShellBuilder {
     } else if (!own.stretch_limit) {
       own.stretch_limit = largest_stretch_limit(body_.material());
     }
+    if (body_.material().yield_strain && own.compression == Compression::buckling)
+      throw Error(ErrorKind::input, settings_.place,
+                  fmt::format("body {}: threads that buckle under compression cannot yield", settings_.name),
+                  "set `compression` to \"elastic\", or leave out `yield_strain`");
     return std::move(found.of_face);
   }
 
@@ -69,6 +73,7 @@ class ShellBuilder {
     if (has_curves(m) || has_bending_curves(m)) problem = "measured curves";
     if (has_bending_friction(m)) problem = "internal friction of bending";
     if (m.yield_curvature) problem = "a `yield_curvature`";
+    if (m.yield_strain) problem = "a `yield_strain`";
     if (problem == nullptr) return;
     throw Error(ErrorKind::input, fabric.place,
                 fmt::format("the fabric `{}` has {}, which a body of several fabrics cannot have",
@@ -166,10 +171,11 @@ class ShellBuilder {
     for (const MappedNumber& map : fabric.maps) {
       const std::string& key = map.variation.key;
       const bool bends = key == "bending_warp" || key == "bending_weft" || key == "bending_bias";
-      if (material.yield_curvature && bends)
+      if ((material.yield_curvature && bends) || (material.yield_strain && key.starts_with("membrane_")))
         throw Error(ErrorKind::input, map.variation.place,
-                    fmt::format("`{}` varies by a map in a material with `yield_curvature`", key),
-                    "give a sheet that creases one number for its bending");
+                    fmt::format("`{}` varies by a map in a material with `{}`", key,
+                                bends ? "yield_curvature" : "yield_strain"),
+                    "give a sheet that yields one number for it");
     }
   }
 

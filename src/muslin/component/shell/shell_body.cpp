@@ -231,6 +231,10 @@ std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
     const std::array yield = {*m.yield_curvature, m.yield_hardening, m.yield_recovery.value_or(0)};
     hash = hash_bytes(yield.data(), sizeof yield, hash);
   }
+  if (m.yield_strain) {
+    const std::array yield = {*m.yield_strain, m.strain_hardening};
+    hash = hash_bytes(yield.data(), sizeof yield, hash);
+  }
   if (has_several_fabrics()) {
     for (const FabricInUse& fabric : fabrics)
       hash = hash_bytes(&fabric.numbers().areal_density, sizeof(double), hash);
@@ -310,6 +314,10 @@ std::string ShellBody::description_of(std::size_t fabric) const {
     text += fmt::format(
         "  yield       where warp bends by more than {:.3g}/m, then with {:.3g} of its stiffness\n",
         *m.yield_curvature, m.yield_hardening);
+  if (m.yield_strain)
+    text += fmt::format(
+        "  yield       where threads stretch by more than {:.3g}, then with {:.3g} of their stiffness\n",
+        *m.yield_strain, m.strain_hardening);
   return text;
 }
 

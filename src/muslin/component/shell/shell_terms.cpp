@@ -13,6 +13,7 @@
 #include "muslin/energy/measured_membrane.hpp"
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/plastic_bending.hpp"
+#include "muslin/energy/plastic_membrane.hpp"
 #include "muslin/energy/shell_bending.hpp"
 #include "muslin/energy/stretch_limit.hpp"
 #include "muslin/material/keyed_material.hpp"
@@ -32,7 +33,7 @@ class ShellTerms {
     if (!body_.pattern) body_.pattern = block_pattern(body_.shell);
     const auto pattern = body_.pattern;
     const auto membrane = membrane_on(pattern, even);
-    add("membrane", membrane);
+    add_membrane(pattern, membrane);
     // The stable step is that of the stiffest state.
     if (body_.triangle_materials.empty()) {
       bound_.add(MembraneEnergy(body_.shell, {stress_.warp.greatest_slope(), stress_.weft.greatest_slope(),
@@ -86,6 +87,15 @@ class ShellTerms {
       if (buckles) rigidities.push_back({f * at.bending_warp, f * at.bending_weft});
     }
     return std::make_shared<MembraneEnergy>(body_.shell, moduli, std::move(pattern), rigidities);
+  }
+  void add_membrane(const Pattern& pattern, const std::shared_ptr<const ElementEnergy>& elastic) {
+    const ShellMaterial& m = material_;
+    if (!m.yield_strain) return add("membrane", elastic);
+    body_.loads.push_back({"membrane", EnergyRole::elastic,
+                           std::make_shared<PlasticMembrane>(
+                               body_.name, body_.shell,
+                               MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson},
+                               MembraneYield{*m.yield_strain, m.strain_hardening}, pattern)});
   }
   bool is_limited() const {
     if (!body_.has_several_fabrics()) return body_.own().stretch_limit.has_value();
