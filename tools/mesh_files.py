@@ -25,6 +25,16 @@ def write_obj(name, comment, positions, faces, uvs=None, groups=None, digits=9):
     (MESHES / f"{name}.obj").write_text("\n".join(lines) + "\n")
 
 
+def write_ply(name, comment, positions, faces, **attributes):
+    """attributes: {name: numbers of the vertices}."""
+    header = ["ply", "format ascii 1.0", f"comment {comment}", f"element vertex {len(positions)}"]
+    header += [f"property float {axis}" for axis in ("x", "y", "z", *attributes)]
+    header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]
+    lines = [" ".join(f"{c:.6g}" for c in (*p, *(a[v] for a in attributes.values()))) for v, p in enumerate(positions)]
+    lines += [f"{len(f)} " + " ".join(map(str, f)) for f in faces]
+    (MESHES / f"{name}.ply").write_text("\n".join(header + lines) + "\n")
+
+
 def write_pc2(name, frames):
     """frames: positions of every point, one array a sample."""
     header = struct.pack("<12siiffi", b"POINTCACHE2\0", 1, len(frames[0]), 0.0, 1.0, len(frames))
