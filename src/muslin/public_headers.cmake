@@ -19,6 +19,7 @@ set(MUSLIN_PUBLIC_HEADERS
     component/scene_files.hpp
     component/selection.hpp
     component/shell/shell_body_settings.hpp
+    component/shell/shell_fabric.hpp
     component/terms.hpp
     constraint/acting.hpp
     constraint/attachment_force.hpp
