@@ -1,6 +1,7 @@
 // muslin fit MEASUREMENTS.toml
 #include "muslin/fit/fit.hpp"
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -27,9 +28,10 @@ void fit(const FitArguments& a) {
     throw Error(ErrorKind::usage, {a.measurements}, "its `name` is not that of a file",
                 "name a file with -o");
   std::error_code ignored;
-  if (std::filesystem::equivalent(file, a.measurements, ignored))
-    throw Error(ErrorKind::usage, {a.measurements}, "the material would replace its measurements",
-                "name another file with -o");
+  for (const std::filesystem::path& read : measurements.files)
+    if (std::filesystem::equivalent(file, read, ignored))
+      throw Error(ErrorKind::usage, {read.string()}, "the material would replace its measurements",
+                  "name another file with -o");
   // Before the drapes, which take long.
   if (std::filesystem::is_directory(file, ignored) ||
       !std::filesystem::is_directory(file.has_parent_path() ? file.parent_path() : ".", ignored))
@@ -38,6 +40,8 @@ void fit(const FitArguments& a) {
   const Fit made = fit_fabric(measurements, a.drape, line.progress());
   line.finish();
   write_atomically(file, made.text);
+  for (const std::string& warning : made.warnings)
+    std::fprintf(stderr, "muslin: warning: %s\n", warning.c_str());
   if (!a.quiet) print(fit_table(made) + file.string() + "\n");
 }
 

@@ -37,6 +37,7 @@ void bind_fit(nb::module_& m) {
       .def_ro("text", &Fit::text, "The material file.")
       .def_ro("values", &Fit::values)
       .def_ro("notes", &Fit::notes)
+      .def_ro("warnings", &Fit::warnings, "Of measurements that contradict each other.")
       .def_ro("simulated_drape", &Fit::simulated_drape, "Drape coefficient of the material, a share; None.")
       .def(
           "write", [](const Fit& fit, const FilePath& file) { write_atomically(file, fit.text); }, "file"_a,

@@ -48,12 +48,30 @@ TEST(FitCommand, ExitCodesTellWhatIsWrong) {
   EXPECT_EQ(onto_itself.code, 2);
   EXPECT_THAT(onto_itself.err, HasSubstr("name another file with -o"));
   EXPECT_EQ(bytes_of(scratch / "m.toml"), sheet);
+  write_bytes(scratch / "warp.csv", "0.01,5\n");
+  write_bytes(scratch / "m.toml", sheet + "[[tensile]]\ndirection = \"warp\"\nfile = \"warp.csv\"\n");
+  const Outcome onto_points = run(scratch, {"fit", file, "-o", (scratch / "warp.csv").string()});
+  EXPECT_EQ(onto_points.code, 2);
+  EXPECT_THAT(onto_points.err, HasSubstr("warp.csv: the material would replace its measurements"));
+  EXPECT_EQ(bytes_of(scratch / "warp.csv"), "0.01,5\n");
+  write_bytes(scratch / "m.toml", sheet);
   EXPECT_EQ(run(scratch, {"fit", file, "-o", (scratch / "no_folder/cloth.toml").string()}).code, 5);
   EXPECT_EQ(run(scratch, {"fit", file, "-o", scratch.path().string()}).code, 5);
   write_bytes(scratch / "m.toml", "name = \"../cloth\"\nareal_density = 0.12\n");
   const Outcome outside = run(scratch, {"fit", file});
   EXPECT_EQ(outside.code, 2);
   EXPECT_THAT(outside.err, HasSubstr("its `name` is not that of a file; name a file with -o"));
+}
+
+TEST(FitCommand, WarnsOfTestsThatContradictEachOther) {
+  Scratch scratch;
+  write_bytes(scratch / "m.toml", sheet + "[[bending]]\ndirection = \"warp\"\nrigidity = 1e-4\n");
+  const Outcome outcome =
+      run(scratch, {"fit", (scratch / "m.toml").string(), "-o", (scratch / "out.toml").string(), "--quiet"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("muslin: warning: measurements contradict each other: the bending "
+                                     "rigidity along warp is"));
+  EXPECT_THAT(outcome.err, HasSubstr("[[bending]] 1 ("));
 }
 
 TEST(FitCommand, ReadsTheExample) {

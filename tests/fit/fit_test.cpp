@@ -294,6 +294,36 @@ TEST(Fit, KesSheetGivesItsNumbersBack) {
   EXPECT_THAT(fit_table(fit), HasSubstr("note: hysteresis"));
 }
 
+/// A sheet whose extension is known to 10 %, and what else it states of tension.
+Fit kes_fit(const KesSide& warp) {
+  Measurements m;
+  m.name = "kes";
+  m.areal_density = exactly(0.125);
+  m.poisson = exactly(0);
+  m.kes.emplace().warp = warp;
+  return fit_fabric(m);
+}
+
+TEST(Fit, ErrorsOfAKesSheetShiftAllPointsOfItsCurve) {
+  // F = F_m (e/EMT)ⁿ: a share of EMT changes every force by n times it, not by the area below the curve.
+  KesSide warp;
+  warp.extension = Measured{0.04, 0.0004};
+  warp.linearity = exactly(0.5);
+  const Fit by_linearity = kes_fit(warp);
+  EXPECT_NEAR(*value_of(by_linearity, "warp_curve").plus_minus, 3 * 0.01, 0.002);
+  // WT keeps the area below the curve, and n = F_m EMT/WT − 1 grows with EMT: every force changes by
+  // n − (n + 1) ln(e/EMT) times the share, or more than n.
+  warp.linearity.reset();
+  warp.tensile_energy = exactly(0.5 * kes_tension * 0.04 / 2);
+  const Fit by_energy = kes_fit(warp);
+  EXPECT_GT(*value_of(by_energy, "warp_curve").plus_minus, 3 * 0.01);
+  EXPECT_LT(*value_of(by_energy, "warp_curve").plus_minus, 4 * 0.01);
+  // LT = 1 is a straight line, whose uncertainty is that of a curve too.
+  warp.tensile_energy.reset();
+  warp.linearity = Measured{1, 0.05};
+  EXPECT_GT(*value_of(kes_fit(warp), "warp_curve").plus_minus, 0.01);
+}
+
 TEST(Fit, RulesFillWhatIsNotMeasured) {
   Measurements m;
   m.name = "bare";
@@ -380,6 +410,19 @@ TEST(Drape, ImpossibleCoefficientNamesTheRange) {
                 HasSubstr("no bending gives a drape coefficient of 99.9 %: bending lengths from 4 "
                           "to 120 mm give"));
   }
+}
+
+TEST(Drape, CanBeCancelledBetweenSteps) {
+  int frames = 0, polls = 0;
+  const Progress progress{[&](double, std::string_view) { ++frames; }, [&] { return ++polls > 60; }};
+  try {
+    drape_coefficient(find_material("cotton"), {}, coarse, progress);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::interrupted);
+  }
+  EXPECT_EQ(polls, 61);
+  EXPECT_LT(2 * frames, polls);  // between frames and between steps
 }
 
 TEST(Drape, SameBitsOnAnyNumberOfThreads) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cache/scratch.hpp"
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -119,6 +120,61 @@ TEST(Measurements, OutlinesGiveTheDrape) {
   EXPECT_NEAR(*m.drape->coefficient->plus_minus, (share(0.13) - share(0.125)) / 2, 1e-4);
 }
 
+/// The message of the error of a drape's outline, a file of these lines.
+std::string refused_outline(const std::string& lines) {
+  const Scratch scratch;
+  write_bytes(scratch / "o.csv", lines);
+  try {
+    read(scratch, density + "[drape]\noutlines = [\"o.csv\"]\n");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Measurements, BadOutlinesHaveTheirLine) {
+  const std::string around = "0.12 0\n0 0.12\n-0.12 0\n0 -0.12\n0.12 0\n";  // closed
+  EXPECT_EQ(refused_outline(around), "none");
+  EXPECT_THAT(
+      refused_outline("0.12 0\n-0.12 0\n0 0.12\n0 -0.12\n"),
+      HasSubstr("o.csv:3: the outline meets itself: its side from here meets that from line 1; list"));
+  EXPECT_THAT(refused_outline(around + around), HasSubstr("meets itself"));
+  EXPECT_THAT(refused_outline("0.12 0\n0.11 0.05\n0 0.18\n-0.11 0.05\n-0.12 0\n0 -0.12\n"),
+              HasSubstr("o.csv:3: the outline leaves the specimen"));
+  EXPECT_THAT(refused_outline("0.095 0.095\n0 0.02\n-0.095 0.095\n-0.095 -0.095\n0.095 -0.095\n"),
+              HasSubstr("o.csv:2: the outline runs over the support"));
+  EXPECT_THAT(refused_outline("0.12 0\n0 0.12\n"), HasSubstr("needs three points"));
+  EXPECT_THAT(refused_outline("120 0\n0 120\n-120 0\n0 -120\n"), HasSubstr("check `outline_unit`"));
+}
+
+TEST(Measurements, UncertaintiesAreAboveZeroAndAtMostTheNumber) {
+  const auto uncertain = [](const char* with) {
+    return refusal(fmt::format("areal_density = {{ value = 0.1, {} }}\n", with));
+  };
+  EXPECT_THAT(uncertain("plus_minus = 0"), HasSubstr("give a number greater than 0 [kg/m²]"));
+  EXPECT_THAT(uncertain("plus_minus = -0.01"), HasSubstr("give a number greater than 0 [kg/m²]"));
+  EXPECT_THAT(uncertain("plus_minus = nan"), HasSubstr("give a number greater than 0 [kg/m²]"));
+  EXPECT_THAT(uncertain("deviation = 0, count = 3"), HasSubstr("give a number greater than 0 [kg/m²]"));
+  EXPECT_THAT(uncertain("plus_minus = 3"), HasSubstr("an uncertainty of 3 is above 100 % of 0.1; give"));
+  EXPECT_THAT(uncertain("deviation = 0.3, count = 4"), HasSubstr("above 100 %"));
+  const std::string strip = density + "[[tensile]]\ndirection = \"warp\"\npoints = [[0.01, 5]]\n";
+  EXPECT_THAT(refusal(strip + "plus_minus = 0\n"), HasSubstr("above 0 to 1"));
+  EXPECT_THAT(refusal(strip + "plus_minus = 1.5\n"), HasSubstr("above 0 to 1"));
+  const Scratch scratch;
+  // Poisson's ratio may be 0, of which no share is an uncertainty; equal repeats do not tell one.
+  const Measurements m =
+      read(scratch, "areal_density = [0.1, 0.1]\npoisson = { value = 0, plus_minus = 0.05 }\n");
+  EXPECT_EQ(*m.poisson->plus_minus, 0.05);
+  EXPECT_FALSE(m.areal_density->plus_minus);
+}
+
+TEST(Measurements, ListTheFilesThatWereRead) {
+  const Scratch scratch;
+  write_bytes(scratch / "warp.csv", "0.01,5\n");
+  const Measurements m = read(scratch, density + "[[tensile]]\ndirection = \"warp\"\nfile = \"warp.csv\"\n");
+  EXPECT_THAT(m.files, testing::ElementsAre(scratch / "m.toml", scratch / "warp.csv"));
+}
+
 TEST(Measurements, MissingFilesAreErrorsOfFiles) {
   EXPECT_THAT(refusal(density + "[[tensile]]\ndirection = \"warp\"\nfile = \"none.csv\"\n", ErrorKind::file),
               HasSubstr("none.csv"));
@@ -156,7 +212,12 @@ TEST(Measurements, BadFilesAreErrorsWithPlaceAndRemedy) {
   EXPECT_THAT(refusal(density + "[drape]\ncoefficient = 120\n"), HasSubstr("above 0 to 100 [%]"));
   EXPECT_THAT(refusal(density + "[drape]\n"), HasSubstr("[drape] has no `coefficient`"));
   EXPECT_THAT(refusal(density + "[kes]\n[kes.warp]\nEMT = 4\nWT = 6.5\nLT = 1\n"),
-              HasSubstr("LT is 1, but WT and EMT make it 0.65; correct one of the three"));
+              HasSubstr("LT is 1, but WT and EMT make it 0.65; correct one of them"));
+  EXPECT_THAT(refusal(density + "[kes]\n[kes.weft]\nWT = 6.5\n"),
+              HasSubstr("m.toml:3:1: `weft` of [kes] has no `EMT`; add EMT"));
+  EXPECT_THAT(refusal(density + "[kes]\n[kes.weft]\nLT = 0.6\n"), HasSubstr("has no `EMT`"));
+  EXPECT_THAT(refusal(density + "[kes]\n[kes.warp]\nEMT = 4\nWT = 60\n"),
+              HasSubstr("WT and EMT make LT 6, which no fabric has"));
   EXPECT_THAT(refusal(density + "[kes]\n[kes.warp]\n2HK = 4\n"), HasSubstr("did you mean"));
 }
 
@@ -177,7 +238,9 @@ TEST(Measurements, FirstLinesOfSpreadsheetsAreRead) {
   for (const char* text : {"\xef\xbb\xbf" "0.01,5\n0.02,15\n", "+0.01;+5\r\n0.02;15\r\n",
                            "\"0.01\",\"5\"\n\"0.02\",\"15\"\n", "strain,force\n%,N\n0.01\t5\n0.02\t15\n"}) {
     write_bytes(scratch / "p.csv", text);
-    EXPECT_THAT(read_points(scratch / "p.csv"), testing::ElementsAre(Vec2(0.01, 5), Vec2(0.02, 15))) << text;
+    std::vector<Vec2> points;
+    for (const PointRow& row : read_points(scratch / "p.csv")) points.push_back(row.point);
+    EXPECT_THAT(points, testing::ElementsAre(Vec2(0.01, 5), Vec2(0.02, 15))) << text;
   }
   write_bytes(scratch / "p.csv", "nan,5\n0.02,15\n");
   EXPECT_THROW(read_points(scratch / "p.csv"), Error);

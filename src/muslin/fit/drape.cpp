@@ -142,7 +142,7 @@ double drape_coefficient(const Material& material, const DrapeTest& test, const 
     simulation.set_positions(uneven(ring, drop));
     for (int frame = 1; frame <= scene.time.frames(); ++frame) {
       progress.at((drop + static_cast<double>(frame) / scene.time.frames()) / options.drops, "drape");
-      simulation.advance();
+      simulation.advance({{}, progress.cancelled});
       if (frame >= first_look && simulation.diagnostics().kinetic < at_rest * fall) break;
     }
     sum += (shadow(ring, simulation.state().positions) - disc) / (whole - disc);

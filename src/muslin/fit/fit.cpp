@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "muslin/fit/contradictions.hpp"
 #include "muslin/fit/material_file.hpp"
+#include "muslin/fit/specimens.hpp"
 #include "muslin/fit/strip_clamps.hpp"
 
 namespace muslin {
@@ -21,7 +23,8 @@ bool is_bending(const FittedValue& value) {
   return value.key.starts_with("bending_") && value.key != "bending_damping";
 }
 
-/// Sums the squares of what the shift of every measured number by its uncertainty changes.
+/// Sums the squares of what the shift of every measured number by its uncertainty changes: of a curve, its
+/// forces at the same strains.
 void propagate(const Measurements& measurements, std::vector<FittedValue>& values) {
   std::vector<double> squares(values.size(), 0);
   std::vector<bool> known(values.size(), false);
@@ -42,7 +45,8 @@ void propagate(const Measurements& measurements, std::vector<FittedValue>& value
     for (std::size_t v = 0; v < values.size(); ++v) {
       const FittedValue* other = find_value(inversion, values[v].key);
       if (other == nullptr) continue;
-      const double change = magnitude(*other) - magnitude(values[v]);
+      const double change =
+          values[v].curve ? relative_change(*values[v].curve, *other->curve) : other->value - values[v].value;
       if (change == 0) continue;
       squares[v] += change * change;
       known[v] = true;
@@ -51,12 +55,12 @@ void propagate(const Measurements& measurements, std::vector<FittedValue>& value
   for (std::size_t v = 0; v < values.size(); ++v) {
     FittedValue& value = values[v];
     if (value.guess || !known[v]) continue;
-    value.plus_minus = std::sqrt(squares[v]) / (value.curve ? std::abs(magnitude(value)) : 1);
+    value.plus_minus = std::sqrt(squares[v]);
   }
 }
 
 Material material_with(const Fit& fit, const std::vector<FittedValue>& values) {
-  return parse_material(material_text({"drape", "", "", values, {}, {}}), fit.material.name);
+  return parse_material(material_text({"drape", "", "", values, {}, {}, {}}), fit.material.name);
 }
 
 /// Bending, scaled by a factor, that drapes as measured.
@@ -186,7 +190,8 @@ class DrapeFit {
 };
 
 void finish(Fit& fit, const Measurements& m) {
-  MaterialFile file{m.name, m.description, m.source, fit.values, {}, m.file.filename().string()};
+  MaterialFile file{
+      m.name, m.description, m.source, fit.values, {}, fit.warnings, m.file.filename().string()};
   const auto reference = [&](const std::string& key, const std::optional<Measured>& x) {
     if (x) file.reference.emplace_back(key, x->value);
   };
@@ -210,10 +215,11 @@ void finish(Fit& fit, const Measurements& m) {
 
 Fit fit_fabric(const Measurements& measurements, const DrapeOptions& options, const Progress& progress) {
   Measurements m = measurements;
+  std::vector<std::string> warnings = contradictions(m);
   estimate_scatter(m);
   hold_strips(m, invert(m));
   Inversion inversion = invert(m);
-  Fit fit{std::move(inversion.values), std::move(inversion.notes), {}, {}, {}, {}};
+  Fit fit{std::move(inversion.values), std::move(inversion.notes), std::move(warnings), {}, {}, {}, {}};
   propagate(m, fit.values);
   fit.material.name = m.name;
   if (m.drape) {

@@ -16,6 +16,7 @@ namespace muslin {
 struct Fit {
   std::vector<FittedValue> values;
   std::vector<std::string> notes;
+  std::vector<std::string> warnings;       ///< of measurements that contradict each other
   std::optional<Measured> measured_drape;  ///< coefficient, a share
   std::optional<double> simulated_drape;   ///< of the material
   std::string text;                        ///< the material file

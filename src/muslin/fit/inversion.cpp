@@ -8,14 +8,12 @@
 #include <fmt/format.h>
 
 #include "muslin/energy/sheet_stress.hpp"
-#include "muslin/fit/elastica.hpp"
+#include "muslin/fit/kes.hpp"
+#include "muslin/fit/rigidity.hpp"
 #include "muslin/fit/rising_curve.hpp"
 
 namespace muslin {
 namespace {
-
-constexpr double gravity = 9.80665;                             // m/s²
-constexpr double tester_angle = 41.5 * std::numbers::pi / 180;  // of cantilevers
 
 // Medians of 618 fabrics on a cantilever tester (docs/materials.md): rigidities at 0.197 kg/m².
 constexpr double usual_warp = 13.6e-6, usual_weft = 8.7e-6, usual_density = 0.197;
@@ -32,29 +30,6 @@ Vec2 stress_point(const Vec2& test) { return {test[0] * (1 + 0.5 * test[0]), tes
 Vec2 tensile_point_of(const Vec2& stress) {
   const double stretch = std::sqrt(1 + 2 * stress[0]);
   return {stretch - 1, stress[1] * stretch};
-}
-
-/// The strip test that a sheet of KES stands for: F = F_m (e/e_m)ⁿ has the extension e_m under F_m and the
-/// linearity 2/(n + 1).
-std::optional<TensileTest> kes_strip(const KesSide& side, Thread direction) {
-  if (!side.extension) return std::nullopt;
-  const double extension = side.extension->value;
-  double linearity = 1;
-  if (side.linearity) {
-    linearity = side.linearity->value;
-  } else if (side.tensile_energy) {
-    linearity = 2 * side.tensile_energy->value / (kes_tension * extension);
-  }
-  TensileTest test;
-  test.direction = direction;
-  test.held = side.held;
-  const double exponent = std::max(2 / linearity - 1, 0.2);
-  const int count = std::abs(exponent - 1) < 1e-9 ? 1 : 8;
-  for (int i = 1; i <= count; ++i) {
-    const double share = static_cast<double>(i) / count;
-    test.points.emplace_back(share * extension, kes_tension * std::pow(share, exponent));
-  }
-  return test;
 }
 
 class Inverter {
@@ -267,24 +242,14 @@ class Inverter {
     const auto state = [&](const std::string& test) {
       if (std::find(tests.begin(), tests.end(), test) == tests.end()) tests.push_back(test);
     };
-    const double weight = m_.areal_density->value * gravity;
     for (const BendingTest& test : m_.bending) {
       if (test.direction != direction) continue;
       for (const Vec2& point : test.points) data.emplace_back(point[0], point[1] * test.factor.value);
       if (!test.points.empty()) state("bending test");
-      if (test.bending_length) {
-        static const double share = cantilever_bending_length(1, tester_angle);
-        const double length = 2 * test.bending_length->value * share;
-        rigidities.push_back(weight * length * length * length);
-        state("cantilever");
-      } else if (test.loop_height) {
-        const double length = loop_length(test);
-        rigidities.push_back(weight * length * length * length);
-        state("hanging loop");
-      } else if (test.rigidity) {
-        rigidities.push_back(test.rigidity->value);
-        state("bending test");
-      }
+      const auto rigidity = rigidity_by(test, m_.areal_density->value);
+      if (!rigidity) continue;
+      rigidities.push_back(*rigidity);
+      state(test.bending_length ? "cantilever" : test.loop_height ? "hanging loop" : "bending test");
     }
     if (const KesSide* side = kes(direction); side != nullptr && side->bending) {
       rigidities.push_back(side->bending->value);
@@ -305,14 +270,6 @@ class Inverter {
     fit(value, data, [](const Vec2& point) { return point; }, "N");
     if (!value.curve) value.unit = "N·m";
     return value;
-  }
-
-  static double loop_length(const BendingTest& test) {
-    try {
-      return loop_bending_length(test.loop, *test.loop_length, test.loop_height->value);
-    } catch (const Error& error) {
-      throw Error(error.kind(), test.place, error.problem(), error.remedy());
-    }
   }
 
   void add_bending(const std::string& key, std::optional<FittedValue> value,
@@ -383,35 +340,6 @@ class Inverter {
   Inversion result_;
 };
 
-/// Fits a factor of the curve through all specimens of a direction to each of them; the standard deviation of
-/// these factors becomes the uncertainty of each, unless a test states its own.
-template <class Test, class Same>
-void scatter_of(std::vector<Test>& tests, const Same& same) {
-  for (const Test& first : tests) {
-    std::vector<Test*> group;
-    for (Test& test : tests)
-      if (!test.points.empty() && same(test, first)) group.push_back(&test);
-    if (group.size() < 2 || std::any_of(group.begin(), group.end(),
-                                        [](const Test* t) { return t->factor.plus_minus.has_value(); }))
-      continue;
-    std::vector<Vec2> data;
-    for (const Test* test : group) data.insert(data.end(), test->points.begin(), test->points.end());
-    const StressCurve curve(fit_rising_curve(data).points);
-    double squares = 0;
-    for (const Test* test : group) {
-      double product = 0, size = 0;
-      for (const Vec2& point : test->points) {
-        const double expected = curve.at(point[0]).stress;
-        product += expected * point[1];
-        size += expected * expected;
-      }
-      squares += (product / size - 1) * (product / size - 1);
-    }
-    const double deviation = std::sqrt(squares / static_cast<double>(group.size() - 1));
-    for (Test* test : group) test->factor.plus_minus = deviation;
-  }
-}
-
 }  // namespace
 
 std::string written_number(double value) { return fmt::format("{:.6g}", value); }
@@ -420,24 +348,6 @@ const FittedValue* find_value(const Inversion& inversion, const std::string& key
   const auto at = std::find_if(inversion.values.begin(), inversion.values.end(),
                                [&](const FittedValue& value) { return value.key == key; });
   return at == inversion.values.end() ? nullptr : &*at;
-}
-
-double magnitude(const FittedValue& value) {
-  if (!value.curve) return value.value;
-  double area = 0;
-  Vec2 before = Vec2::Zero();
-  for (const Vec2& point : *value.curve) {
-    area += (point[0] - before[0]) * (point[1] + before[1]) / 2;
-    before = point;
-  }
-  return area;
-}
-
-void estimate_scatter(Measurements& m) {
-  const auto same_direction = [](const auto& a, const auto& b) { return a.direction == b.direction; };
-  scatter_of(m.tensile, same_direction);
-  scatter_of(m.bending, same_direction);
-  scatter_of(m.shear, [](const ShearTest&, const ShearTest&) { return true; });
 }
 
 Inversion invert(const Measurements& measurements) { return Inverter(measurements).run(); }

@@ -38,11 +38,4 @@ Inversion invert(const Measurements& measurements);
 /// Returns the value of the key; null if there is none.
 const FittedValue* find_value(const Inversion& inversion, const std::string& key);
 
-/// Returns the number by which the uncertainty of a value is measured: the value, or the area below a curve.
-double magnitude(const FittedValue& value);
-
-/// States the uncertainties of the factors of specimens whose tests do not: the scatter between specimens of
-/// the same direction.
-void estimate_scatter(Measurements& measurements);
-
 }  // namespace muslin

@@ -65,9 +65,11 @@ std::string guesses_text(const std::vector<FittedValue>& values) {
 }  // namespace
 
 std::string material_text(const MaterialFile& file) {
-  std::string text = fmt::format("name = {}\ndescription = {}\nsource = {}\nguesses = [{}]\n\n[shell]\n",
-                                 toml_text(file.name), toml_text(file.description),
-                                 toml_text(source_text(file)), guesses_text(file.values));
+  std::string text;
+  for (const std::string& warning : file.warnings) text += fmt::format("# warning: {}\n", warning);
+  text += fmt::format("name = {}\ndescription = {}\nsource = {}\nguesses = [{}]\n\n[shell]\n",
+                      toml_text(file.name), toml_text(file.description), toml_text(source_text(file)),
+                      guesses_text(file.values));
   for (const FittedValue& value : file.values)
     text += fmt::format("{} = {}  # {}\n", value.key, value_text(value), remark(value));
   std::string reference;

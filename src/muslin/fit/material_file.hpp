@@ -13,6 +13,7 @@ struct MaterialFile {
   std::string name, description, source;
   std::vector<FittedValue> values;
   std::vector<std::pair<std::string, double>> reference;  ///< measured numbers that the material does not use
+  std::vector<std::string> warnings;                      ///< of the measurements
   std::string measurements;                               ///< name of their file
 };
 

@@ -11,8 +11,19 @@ Measured mean_of(const std::vector<double>& repeats) {
   for (const double x : repeats) sum += x;
   const double n = static_cast<double>(repeats.size()), mean = sum / n;
   for (const double x : repeats) squares += (x - mean) * (x - mean);
-  if (repeats.size() < 2) return {mean, std::nullopt};
+  if (squares == 0) return {mean, std::nullopt};  // one, or finer than the numbers are written
   return {mean, std::sqrt(squares / (n - 1) / n)};
+}
+
+/// The number of this name over `divisor`. A number that may be 0 has no share of itself as its bound.
+double uncertainty(const schema::Key& key, const TomlTable& given, const char* name, double value,
+                   double divisor) {
+  const double stated = given.number(name, key.unit, Range::positive()) / divisor;
+  const double most = key.range.min > 0 || key.range.open_min ? value : key.range.max;
+  if (stated > most)
+    throw given.error(name, fmt::format("an uncertainty of {:.3g} is above 100 % of {:.3g}", stated, most),
+                      "give the standard uncertainty in the unit of the number");
+  return stated;
 }
 
 }  // namespace
@@ -33,12 +44,11 @@ Measured read_measured(const schema::Key& key, const TomlTable& table, double sc
   } else if (value.type == TomlValue::Type::table) {
     const TomlTable given(value, name, {"value", "plus_minus", "deviation", "count"});
     result.value = given.number("value", key.unit, key.range);
-    const Range any = Range::non_negative();
     if (given.has("plus_minus")) {
-      result.plus_minus = given.number("plus_minus", key.unit, any);
+      result.plus_minus = uncertainty(key, given, "plus_minus", result.value, 1);
     } else if (given.has("deviation")) {
       const double count = static_cast<double>(given.integer("count", 1, 1000000, 1));
-      result.plus_minus = given.number("deviation", key.unit, any) / std::sqrt(count);
+      result.plus_minus = uncertainty(key, given, "deviation", result.value, std::sqrt(count));
     }
   } else {
     result.value = to_number(value, name, key.unit, key.range);

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "muslin/core/toml_table.hpp"
+#include "muslin/fit/kes.hpp"
 #include "muslin/fit/measured_key.hpp"
+#include "muslin/fit/outline.hpp"
 #include "muslin/fit/points_file.hpp"
 #include "muslin/schema/declare.hpp"
 
@@ -96,7 +98,7 @@ void add_point_keys(schema::Table& table, const char* x, const char* y, std::spa
                            .otherwise(fmt::format("`\"{}\"`", y_units[0].word))
                            .means("unit of the second numbers"));
   table.keys.push_back(schema::number("plus_minus", &S::plus_minus)
-                           .range({0, 1, false})
+                           .range({0, 1, true})
                            .means("standard uncertainty of all forces as a share of them"));
 }
 
@@ -122,12 +124,12 @@ void check_points(const std::vector<Vec2>& points, const Place& place, const std
 
 /// Takes the points from where the table states them, in SI units. Returns their place.
 template <class Test>
-Place take_points(const TomlTable& table, Stated<Test>& s, const Measurements& m, double x_scale,
-                  double y_scale) {
+Place take_points(const TomlTable& table, Stated<Test>& s, Measurements& m, double x_scale, double y_scale) {
   Place place = table.place("points");
   if (!s.curve.file.empty()) {
     const std::filesystem::path file = m.file.parent_path() / s.curve.file;
-    s.curve.points = read_points(file);
+    m.files.push_back(file);
+    for (const PointRow& row : read_points(file)) s.curve.points.push_back(row.point);
     place = {file.string(), 0, 0};
   }
   for (const Vec2& point : s.curve.points) s.points.emplace_back(point[0] * x_scale, point[1] * y_scale);
@@ -172,7 +174,7 @@ const schema::Table& tensile_table() {
   return table;
 }
 
-void finish_tensile(const TomlTable& table, std::size_t, Stated<TensileTest>& s, const Measurements& m) {
+void finish_tensile(const TomlTable& table, Stated<TensileTest>& s, Measurements& m) {
   double x = scale_of(s.x_unit, strains), y = scale_of(s.y_unit, tensile_forces);
   if (s.x_unit == "mm") {
     if (!s.length)
@@ -206,7 +208,7 @@ const schema::Table& shear_table() {
   return table;
 }
 
-void finish_shear(const TomlTable& table, std::size_t, Stated<ShearTest>& s, const Measurements& m) {
+void finish_shear(const TomlTable& table, Stated<ShearTest>& s, Measurements& m) {
   const Place place = take_points(table, s, m, scale_of(s.x_unit, angles), scale_of(s.y_unit, shear_forces));
   check_points(s.points, place, table.title(), 60, "leave out angles past the locking of the threads");
   if (!s.modulus) require_modulus(s.points, place, table.title(), 1 / radian, shear_moduli, "N/m");
@@ -247,7 +249,7 @@ const schema::Table& bending_table() {
   return table;
 }
 
-void finish_bending(const TomlTable& table, std::size_t, Stated<BendingTest>& s, const Measurements& m) {
+void finish_bending(const TomlTable& table, Stated<BendingTest>& s, Measurements& m) {
   const Place place = take_points(table, s, m, scale_of(s.x_unit, curvatures), scale_of(s.y_unit, moments));
   check_points(s.points, place, table.title(), 1e4, "check `curvature_unit`");
   const int given = (s.bending_length ? 1 : 0) + (s.loop_height ? 1 : 0) + (s.rigidity ? 1 : 0) +
@@ -308,17 +310,7 @@ const schema::Table& drape_table() {
   return table;
 }
 
-/// The area inside of a closed polygon.
-double enclosed_area(const std::vector<Vec2>& polygon) {
-  double twice = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    twice += a[0] * b[1] - a[1] * b[0];
-  }
-  return std::abs(twice) / 2;
-}
-
-DrapeTest finish_drape(const TomlTable& table, const StatedDrape& s, const Measurements& m) {
+DrapeTest finish_drape(const TomlTable& table, const StatedDrape& s, Measurements& m) {
   DrapeTest drape = s;
   drape.place = table.place();
   if (s.support_diameter >= 0.95 * s.specimen_diameter)
@@ -327,18 +319,11 @@ DrapeTest finish_drape(const TomlTable& table, const StatedDrape& s, const Measu
   if (s.coefficient) return drape;
   if (s.outlines.empty())
     throw Error(ErrorKind::input, table.place(), "[drape] has no `coefficient`", "add it, or `outlines`");
-  const double disc = s.support_diameter * s.support_diameter,
-               whole = s.specimen_diameter * s.specimen_diameter;
   double sum = 0, squares = 0;
   for (const std::string& name : s.outlines) {
     const std::filesystem::path file = m.file.parent_path() / name;
-    const double area = enclosed_area(read_points(file)) * s.outline_unit * s.outline_unit;
-    const double share = (area * 4 / std::numbers::pi - disc) / (whole - disc);
-    if (share <= 0 || share > 1)
-      throw Error(
-          ErrorKind::input, Place{file.string(), 0, 0},
-          fmt::format("the outline's area of {:.4g} m² is not between those of support and specimen", area),
-          "check `outline_unit`, and list the points in order around the shadow");
+    m.files.push_back(file);
+    const double share = outline_coefficient(file, s.outline_unit, s);
     sum += share;
     squares += share * share;
   }
@@ -355,7 +340,7 @@ const schema::Table& kes_side_table() {
   static const schema::Table table = schema::table_of<S>(
       "`warp`, `weft` of [kes]",
       {measured("LT", &S::linearity)
-           .range({0.1, 1.5, false})
+           .range(kes_linearities)
            .means("linearity of tension, 2 WT/(500 gf/cm · EMT)"),
        measured("WT", &S::tensile_energy, gf_per_cm)
            .unit("gf·cm/cm²")
@@ -415,7 +400,7 @@ schema::Declaration tests(const char* name, std::vector<Test> Measurements::* me
           const TomlTable table = keys().open(value, schema::section_title(k.name, value, index));
           Stated<Test> stated;
           keys().read(table, stated);
-          finish(table, index, stated, m);
+          finish(table, stated, m);
           stated.place = table.place();
           (m.*member).push_back(std::move(stated));
         }
@@ -423,20 +408,6 @@ schema::Declaration tests(const char* name, std::vector<Test> Measurements::* me
       [](const schema::Key&, const Measurements&, TomlValue&) {});
   key.table = keys;
   return schema::Declaration(std::move(key));
-}
-
-/// KES states one of LT and WT by the other.
-void check_kes(const KesSide& side, const std::string& name, const Place& place) {
-  if ((side.linearity || side.tensile_energy) && !side.extension)
-    throw Error(ErrorKind::input, place, fmt::format("`{}` of [kes] has no `EMT`", name),
-                "add EMT, the strain in % at 500 gf/cm");
-  if (!side.linearity || !side.tensile_energy) return;
-  const double linearity = 2 * side.tensile_energy->value / (kes_tension * side.extension->value);
-  if (std::abs(linearity / side.linearity->value - 1) > 0.1)
-    throw Error(ErrorKind::input, place,
-                fmt::format("`{}` of [kes]: LT is {:.3g}, but WT and EMT make it {:.3g}", name,
-                            side.linearity->value, linearity),
-                "correct one of the three: LT = 2 WT/(500 gf/cm · EMT)");
 }
 
 schema::Table declared_measurements() {
@@ -463,8 +434,12 @@ schema::Table declared_measurements() {
            [](const schema::Key& k, const TomlTable& top, S& m) {
              const TomlTable given = kes_table().open(*top.find(k.name), "[kes]");
              kes_table().read(given, m.kes.emplace());
-             if (m.kes->warp) check_kes(*m.kes->warp, "warp", given.place("warp"));
-             if (m.kes->weft) check_kes(*m.kes->weft, "weft", given.place("weft"));
+             for (const auto& [side, name] :
+                  {std::pair{&m.kes->warp, "warp"}, std::pair{&m.kes->weft, "weft"}}) {
+               if (!*side) continue;
+               (*side)->place = given.place(name);
+               check_kes_tension(**side, name);
+             }
            },
            [](const schema::Key&, const S&, TomlValue&) {})
            .means("a sheet of the Kawabata Evaluation System, in its units"),
@@ -501,6 +476,7 @@ Measurements parse_measurements(std::string_view text, const std::filesystem::pa
   const TomlTable top = measurements_table().open(root, "the file of measurements");
   Measurements m;
   m.file = file;
+  m.files = {file};
   m.name = file.stem().string();
   measurements_table().read(top, m);
   if (!m.areal_density && m.kes) m.areal_density = m.kes->weight;

@@ -93,7 +93,8 @@ struct KesSheet {
 };
 
 struct Measurements {
-  std::filesystem::path file;  ///< read from it
+  std::filesystem::path file;                ///< read from it
+  std::vector<std::filesystem::path> files;  ///< all that were read, this one first
   std::string name, description, source;
   std::optional<Measured> areal_density;  ///< [kg/m²]
   std::optional<Measured> thickness;      ///< [m]

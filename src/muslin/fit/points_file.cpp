@@ -42,9 +42,9 @@ std::optional<double> number_of(std::string_view word) {
 
 }  // namespace
 
-std::vector<Vec2> read_points(const std::filesystem::path& file) {
+std::vector<PointRow> read_points(const std::filesystem::path& file) {
   const std::string text = read_text(file);
-  std::vector<Vec2> points;
+  std::vector<PointRow> points;
   int number = 0;
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   for (std::size_t at = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0; at < text.size();) {
@@ -61,7 +61,7 @@ std::vector<Vec2> read_points(const std::filesystem::path& file) {
     if (!x || !y)
       throw Error(ErrorKind::input, Place{file.string(), number, 0}, "the line is not two numbers",
                   "write two numbers with decimal points, separated by a comma, a semicolon or a tab");
-    points.emplace_back(*x, *y);
+    points.push_back({Vec2(*x, *y), number});
   }
   if (points.empty())
     throw Error(ErrorKind::input, Place{file.string(), 0, 0}, "the file has no line of two numbers",
