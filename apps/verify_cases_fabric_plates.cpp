@@ -10,18 +10,6 @@
 namespace muslin::app {
 namespace {
 
-std::string point_force(const Vec3& at, const Vec3& force) {
-  return fmt::format(
-      "[[force]]\ntype = \"point\"\nforce = [{:.17g}, {:.17g}, {:.17g}]\n"
-      "where = {{ nearest = [{:.17g}, {:.17g}, {:.17g}] }}\n",
-      force.x(), force.y(), force.z(), at.x(), at.y(), at.z());
-}
-
-std::string probe(const std::string& name, const Vec3& at) {
-  return fmt::format("[[probe]]\nname = \"{}\"\nat = [{:.17g}, {:.17g}, {:.17g}]\n", name, at.x(), at.y(),
-                     at.z());
-}
-
 /// A square plate on four hinges under a small pressure: w = 0.00406235 q a⁴/D in its middle.
 std::vector<Comparison> plate(std::initializer_list<int> cells) {
   const double rigidity = 1, pressure = 0.1, thickness = 0.05;  // deflects by 4e-4 sides
@@ -40,11 +28,6 @@ std::vector<Comparison> plate(std::initializer_list<int> cells) {
                                  simulation.probe("middle").z() * rigidity / pressure));
   }
   return numbers;
-}
-
-/// A body of Young's modulus E and this thickness.
-std::string shell_body(double youngs, double poisson, double thickness) {
-  return fabric_body(youngs * std::pow(thickness, 3) / (12 * (1 - poisson * poisson)), poisson, thickness);
 }
 
 /// Moves the vertex nearest to a point.
@@ -96,13 +79,10 @@ std::array<double, 2> twisted_strip(const FabricMesh& of) {
   return moved;
 }
 
-/// The tolerance of a mesh whose cells go around a circle, of which half counts, by symmetry.
-double around(const FabricMesh& of) { return FabricMesh{of.kind, of.cells / 2}.tolerance(); }
-
 std::vector<Comparison> cylinder(std::initializer_list<int> cells) {
   std::vector<Comparison> numbers;
   for (const FabricMesh& of : fabric_meshes(cells))
-    numbers.push_back({of.label("deflection"), 0.1139, pinched_cylinder(of), around(of)});
+    numbers.push_back({of.label("deflection"), 0.1139, pinched_cylinder(of), tolerance_around(of)});
   return numbers;
 }
 

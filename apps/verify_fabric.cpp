@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <map>
 
-#include "support/strips.hpp"
 #include <fmt/format.h>
+
+#include "muslin/geometry/triangulated_strip.hpp"
 
 namespace muslin::app {
 
@@ -31,7 +32,7 @@ std::vector<FabricMesh> fabric_meshes(std::initializer_list<int> cells) {
 }
 
 FabricSheet::FabricSheet(const Experiment& experiment, const FabricMesh& of, double width, bool clamped)
-    : mesh(test::strip(of.kind, of.cells, width, clamped)) {
+    : mesh(triangulated_strip(of.kind, of.cells, width, clamped)) {
   experiment.mesh("sheet.obj", mesh);
 }
 
@@ -50,7 +51,7 @@ Vec3 FabricSheet::mean(const Simulation& simulation, const std::vector<Vec3>& po
 
 Mesh bent_strip(const FabricMesh& of, double width, bool clamped,
                 const std::function<Vec3(const Vec3&)>& shape) {
-  const Mesh flat = test::strip(of.kind, of.cells, width, clamped);
+  const Mesh flat = triangulated_strip(of.kind, of.cells, width, clamped);
   Mesh mesh;
   std::map<std::array<std::int64_t, 3>, int> numbers;
   std::vector<int> vertices;
@@ -82,6 +83,24 @@ material = {{ areal_density = {}, membrane_warp = {:.17g}, bending_warp = {:.17g
                      fabric_density, 12 * (1 - poisson * poisson) * rigidity / (thickness * thickness),
                      rigidity, poisson);
 }
+
+std::string shell_body(double youngs, double poisson, double thickness) {
+  return fabric_body(youngs * std::pow(thickness, 3) / (12 * (1 - poisson * poisson)), poisson, thickness);
+}
+
+std::string point_force(const Vec3& at, const Vec3& force) {
+  return fmt::format(
+      "[[force]]\ntype = \"point\"\nforce = [{:.17g}, {:.17g}, {:.17g}]\n"
+      "where = {{ nearest = [{:.17g}, {:.17g}, {:.17g}] }}\n",
+      force.x(), force.y(), force.z(), at.x(), at.y(), at.z());
+}
+
+std::string probe(const std::string& name, const Vec3& at) {
+  return fmt::format("[[probe]]\nname = \"{}\"\nat = [{:.17g}, {:.17g}, {:.17g}]\n", name, at.x(), at.y(),
+                     at.z());
+}
+
+double tolerance_around(const FabricMesh& of) { return FabricMesh{of.kind, of.cells / 2}.tolerance(); }
 
 std::string fabric_pin(double x0, double y0, double x1, double y1, const std::string& keyframes) {
   return fmt::format(

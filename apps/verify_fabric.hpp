@@ -54,6 +54,18 @@ std::string fabric_body(double rigidity, double poisson, double thickness);
 /// Pins the vertices of a box between two corners, in the plane z = 0 [m].
 std::string fabric_pin(double x0, double y0, double x1, double y1, const std::string& keyframes = "");
 
+/// A body of a sheet as above, made of a solid of this Young's modulus [Pa].
+std::string shell_body(double youngs, double poisson, double thickness);
+
+/// A force [N] on the vertex nearest to a point [m].
+std::string point_force(const Vec3& at, const Vec3& force);
+
+/// A probe of this name.
+std::string probe(const std::string& name, const Vec3& at);
+
+/// The tolerance of a mesh whose cells go around a circle, of which half counts, by symmetry.
+double tolerance_around(const FabricMesh& of);
+
 inline constexpr double fabric_density = 0.2;     ///< [kg/m²]
 inline constexpr double fabric_width = 0.25;      ///< of strips, over their length
 inline constexpr double fabric_thickness = 0.01;  ///< over their length: K L²/D = 1.2e5

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "support/strips.hpp"
 #include <gtest/gtest.h>
 
 #include "muslin/energy/measured_membrane.hpp"
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/shell_bending.hpp"
+#include "muslin/geometry/triangulated_strip.hpp"
 
 namespace muslin {
 namespace {
@@ -128,7 +128,7 @@ class FoldAcrossTheMesh : public testing::TestWithParam<const char*> {};
 TEST_P(FoldAcrossTheMesh, StoresLittleOfTheElasticEnergy) {
   constexpr double rigidity = 2.5e-6, stretch = 6125, shear = 17;  // a light silk
   constexpr double length = 0.36, wave = 0.12;
-  Mesh mesh = test::strip(GetParam(), 36, 1.0 / 3, false);  // edges of 1 cm
+  Mesh mesh = triangulated_strip(GetParam(), 36, 1.0 / 3, false);  // edges of 1 cm
   for (Vec3& p : mesh.positions) p *= length;
   const Vec3 across(std::cos(0.6), std::sin(0.6), 0), along(-across.y(), across.x(), 0);
   double dearest = 0, elastic_dearest = 0;

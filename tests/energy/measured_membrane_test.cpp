@@ -10,11 +10,11 @@
 
 #include "support/potential_battery.hpp"
 #include "support/sheet.hpp"
-#include "support/strips.hpp"
 #include <gtest/gtest.h>
 
 #include "muslin/core/error.hpp"
 #include "muslin/energy/membrane_energy.hpp"
+#include "muslin/geometry/triangulated_strip.hpp"
 #include "muslin/material/measured_sheet.hpp"
 
 namespace muslin {
@@ -37,7 +37,7 @@ struct Pulled {
 };
 
 Pulled pull(const std::string& kind, const Vec3& warp, const SheetStress& stress, double x, double y) {
-  const Mesh mesh = test::strip(kind, 8, width, false);
+  const Mesh mesh = triangulated_strip(kind, 8, width, false);
   const MeasuredMembrane energy(build_shell(mesh, mesh.positions, {warp}), stress, poisson);
   std::vector<Vec3> at = mesh.positions;
   for (Vec3& p : at) p = Vec3(x * p.x(), y * p.y(), 0);

@@ -10,10 +10,10 @@
 #include "support/linearized_product.hpp"
 #include "support/potential_battery.hpp"
 #include "support/sheet.hpp"
-#include "support/strips.hpp"
 #include <gtest/gtest.h>
 
 #include "muslin/energy/shell_bending.hpp"
+#include "muslin/geometry/triangulated_strip.hpp"
 #include "muslin/solver/linearization.hpp"
 
 namespace muslin {
@@ -44,7 +44,7 @@ TEST_P(CurvedStrip, RolledUpHasTheMomentOfItsCurve) {
     std::vector<std::vector<double>> moments;
     const std::vector<double> curvatures = {1, 4, 8, 16};  // edges turn by up to 0.4
     for (const int n : {40, 80}) {
-      const Mesh mesh = test::strip(GetParam(), n, 0.1, false);
+      const Mesh mesh = triangulated_strip(GetParam(), n, 0.1, false);
       const ShellBending bending(build_shell(mesh, mesh.positions, {warp}), fabric());
       const auto energy = [&](double curvature) {
         return bending.value(rolled(mesh.positions, curvature)) / 0.1;

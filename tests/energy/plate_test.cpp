@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "support/potential_battery.hpp"
-#include "support/strips.hpp"
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <gtest/gtest.h>
 
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/shell_bending.hpp"
+#include "muslin/geometry/triangulated_strip.hpp"
 
 namespace muslin {
 namespace {
@@ -122,7 +122,7 @@ bool before_clamp(const Vec3& p) { return p.x() < 1e-9; }
 /// Deflections of the end's corners at y = 0 and y = width under a load of 1 per area.
 std::array<double, 2> loaded_ends(const std::string& kind, int n, const Vec3& warp,
                                   const BendingModuli& moduli) {
-  const Strip strip(test::strip(kind, n, width, true), warp, moduli, before_clamp);
+  const Strip strip(triangulated_strip(kind, n, width, true), warp, moduli, before_clamp);
   const std::vector<int> number = strip.freedoms({2});
   const std::vector<Vec3> x =
       strip.moved(number, solve(strip.hessian(*strip.bending, strip.rest, number), strip.load(number, 2)));
@@ -132,7 +132,7 @@ std::array<double, 2> loaded_ends(const std::string& kind, int n, const Vec3& wa
 /// The ratio of the stiffness against a twist, of ends that are held twisted, to D (1 − ν).
 double torsion(const std::string& kind, int n) {
   const double poisson = 0.3;
-  const Strip strip(test::strip(kind, n, width, false), Vec3::UnitX(), {1, 1, 1, poisson},
+  const Strip strip(triangulated_strip(kind, n, width, false), Vec3::UnitX(), {1, 1, 1, poisson},
                     [](const Vec3& p) { return p.x() < 1e-9 || p.x() > 1 - 1e-9; });
   const Shell& shell = strip.shell;
   const ShellBending bending(shell, {1, 1, 1, poisson});  // ends that may curve
@@ -157,7 +157,8 @@ double torsion(const std::string& kind, int n) {
 /// ρ g L³/D at which a strip that stands on edge buckles sideways under its weight.
 double lateral_buckling(const std::string& kind, int n) {
   const double poisson = 0.25;
-  const Strip strip(test::strip(kind, n, width, true), Vec3::UnitX(), {1, 1, 1, poisson}, before_clamp);
+  const Strip strip(triangulated_strip(kind, n, width, true), Vec3::UnitX(), {1, 1, 1, poisson},
+                    before_clamp);
   const MembraneEnergy membrane(strip.shell, {1, 1, 1 / (2 * (1 + poisson)), poisson});
   const std::vector<int> plane = strip.freedoms({0, 1}), across = strip.freedoms({2});
   const Vector u = solve(strip.hessian(membrane, strip.rest, plane), strip.load(plane, 1));
@@ -255,7 +256,7 @@ TEST(CurvedPlate, QuarterCircleBendsAsACurvedBeam) {
   const int n = 20;
   const double length = std::numbers::pi / 2, load = 1e-3;
   for (const std::string kind : {"right", "alternating"}) {
-    Mesh mesh = test::strip(kind, n, width, true);
+    Mesh mesh = triangulated_strip(kind, n, width, true);
     std::vector<char> end;
     for (Vec3& p : mesh.positions) {
       const double s = length * p.x();
@@ -289,7 +290,7 @@ TEST(SeamOfThreeSheets, BearsMomentsAsAFrame) {
   std::vector<char> end, clamp;
   std::vector<int> seam;
   for (int sheet = 0; sheet < 3; ++sheet) {
-    const Mesh part = test::strip("right", n, width, sheet < 2);
+    const Mesh part = triangulated_strip("right", n, width, sheet < 2);
     const double angle = 2 * std::numbers::pi / 3 * sheet + 0.3;
     std::vector<int> id;
     for (const Vec3& p : part.positions) {

@@ -8,13 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "support/strips.hpp"
+#include "muslin/geometry/triangulated_strip.hpp"
 
 namespace muslin::test {
 
 /// A strip from x = 0 to 1 between two clamps, a row of cells each.
 struct ClampedStrip {
-  ClampedStrip(const std::string& kind, int n, double width) : mesh(strip(kind, n, width, true)) {
+  ClampedStrip(const std::string& kind, int n, double width)
+      : mesh(triangulated_strip(kind, n, width, true)) {
     std::vector<int> end;
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
       if (std::abs(mesh.positions[v].x() - 1) < 1e-9) end.push_back(static_cast<int>(v));

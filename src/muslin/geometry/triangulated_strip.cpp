@@ -1,21 +1,18 @@
-// Strips of many triangulations in the plane z = 0, for tests that must not depend on the mesh.
-#pragma once
+#include "muslin/geometry/triangulated_strip.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "muslin/geometry/mesh.hpp"
-
-namespace muslin::test {
+namespace muslin {
+namespace {
 
 /// Flips edges until the triangles, counter-clockwise in the plane z = 0, are Delaunay's.
-inline void make_delaunay(const std::vector<Vec3>& x, std::vector<std::array<int, 3>>& triangles) {
+void make_delaunay(const std::vector<Vec3>& x, std::vector<std::array<int, 3>>& triangles) {
   const auto at = [&](int v) -> const Vec3& { return x[static_cast<std::size_t>(v)]; };
   const auto cotangent = [&](int apex, int a, int b) {
     const Vec3 p = at(a) - at(apex), q = at(b) - at(apex);
@@ -43,9 +40,9 @@ inline void make_delaunay(const std::vector<Vec3>& x, std::vector<std::array<int
   }
 }
 
-/// A strip from x = 0 to 1 and y = 0 to `width`, n cells long, with a row of cells before x = 0 if `clamped`.
-/// `kind`: right, left, alternating, crossed, equilateral, jittered, random (diagonals), delaunay.
-inline Mesh strip(const std::string& kind, int n, double width, bool clamped) {
+}  // namespace
+
+Mesh triangulated_strip(const std::string& kind, int n, double width, bool clamped) {
   const int m = std::max(3, static_cast<int>(std::lround(n * width))), before = clamped ? 1 : 0;
   const double hx = 1.0 / n, hy = width / m;
   std::mt19937 engine(7);
@@ -111,4 +108,4 @@ inline Mesh strip(const std::string& kind, int n, double width, bool clamped) {
   return mesh;
 }
 
-}  // namespace muslin::test
+}  // namespace muslin
