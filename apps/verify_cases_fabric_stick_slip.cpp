@@ -11,15 +11,19 @@
 namespace muslin::app {
 namespace {
 
-constexpr double soft_thickness = 1.0 / 32;  // of the length: K L²/D = 12,288
+constexpr double soft_thickness = 1.0 / 32;                                   // of the length
+constexpr double stretch_stiffness = 12 / (soft_thickness * soft_thickness);  // K L²/D
 constexpr double contact_distance = 5e-4;    // of the length
 
 /// A strip of length 1 clamped at x = 0 along x, bent, whose tip is held on the x axis and free to turn.
 class PinnedElastica {
  public:
-  /// The strip's tip turns by this angle. The forces N along and T across, over EI/L², solve θ'' = −N sin θ +
-  /// T cos θ from the tip, where θ' = 0, to the clamp, where θ = 0, on the axis. Shooting with Newton's
-  /// method.
+  /// The strip's tip turns by this angle. The forces N along and T across, over EI/L², solve
+  ///
+  ///   θ'' = λ (T cos θ − N sin θ),  x' = λ cos θ,  y' = λ sin θ,  λ = 1 − (N cos θ + T sin θ)/K
+  ///
+  /// over the length at rest from the tip, where θ' = 0, to the clamp, where θ = 0, on the axis; K compresses
+  /// the strip. Shooting with Newton's method.
   explicit PinnedElastica(double tip_angle) : across_(0.178 * buckling * tip_angle) {
     for (int i = 0; i < 30; ++i) {
       const double small = 1e-5;
@@ -58,7 +62,9 @@ class PinnedElastica {
   void integrate(double tip_angle) {
     using Values = std::array<double, 4>;  // angle, its slope, x and y, from the tip
     const auto slope = [&](const Values& y) {
-      return Values{y[1], across_ * std::cos(y[0]) - along_ * std::sin(y[0]), std::cos(y[0]), std::sin(y[0])};
+      const double cosine = std::cos(y[0]), sine = std::sin(y[0]);
+      const double length = 1 - (along_ * cosine + across_ * sine) / stretch_stiffness;
+      return Values{y[1], length * (across_ * cosine - along_ * sine), length * cosine, length * sine};
     };
     const auto moved = [](const Values& y, double by, const Values& s) {
       return Values{y[0] + by * s[0], y[1] + by * s[1], y[2] + by * s[2], y[3] + by * s[3]};
@@ -117,14 +123,14 @@ Slip push_until_slip(const FabricMesh& of, double friction) {
     for (int i = 0; i < frames; ++i)
       push += fmt::format(", {{ time = {:.17g}, translate = [{:.17g}, 0, 0] }}", time += 1 / frame_rate, by);
   }
-  // The gap at the start is nearly that of the pressure to come. Friction is that of the pressure in the
-  // first iterations of a step: a strip that is thrown off the floor in the first step slips.
+  // The strip starts where contact begins: thrown onto or off the floor in the first iterations of a step, in
+  // which friction is taken, it would slip.
   Simulation simulation = experiment.start(
       fmt::format("[time]\nframe_rate = {}\nsteps_per_frame = 1\nduration = 1e4\n"
                   "[solver]\neffort = \"exact\"\ntolerance = 1e-5\n"
                   "[contact]\nfriction = {}\ndistance = {}\n"
                   "[[collider]]\nshape = \"plane\"\ncenter = [{:.17g}, 0, 0]\nnormal = [-1, 0, 0]\n",
-                  frame_rate, friction, contact_distance, start.at(1).x() + 0.92 * contact_distance) +
+                  frame_rate, friction, contact_distance, start.at(1).x() + contact_distance) +
       fabric_body(rigidity, 0, soft_thickness) +
       "rest_mesh = \"flat.obj\"\nthickness = 1e-6\nself_contact = false\n" +
       "[[pin]]\nwhere = { box = [[-1, -1, -1], [1e-9, 1, 1]] }\n" + push + "]\n");
