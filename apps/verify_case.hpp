@@ -40,13 +40,16 @@ std::vector<VerifyCase> shell_cases();
 std::vector<VerifyCase> fabric_bending_cases();
 std::vector<VerifyCase> fabric_membrane_cases();
 std::vector<VerifyCase> fabric_plate_cases();
+std::vector<VerifyCase> fabric_roof_cases();
 std::vector<VerifyCase> fabric_motion_cases();
+std::vector<VerifyCase> fabric_hanging_cases();
 std::vector<VerifyCase> fabric_stick_slip_cases();
 std::vector<VerifyCase> resolution_cases();
 std::vector<VerifyCase> fit_cases();
 std::vector<VerifyCase> drape_cases();
 std::vector<VerifyCase> friction_cases();
 std::vector<VerifyCase> contact_cases();
+std::vector<VerifyCase> impact_cases();
 std::vector<VerifyCase> promise_cases();
 std::vector<VerifyCase> trust_cases();
 std::vector<VerifyCase> trust_motion_cases();  ///< a part of trust_cases()

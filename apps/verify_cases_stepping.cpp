@@ -160,6 +160,41 @@ type = "gravity"
   return numbers;
 }
 
+/// A strip of cloth, clamped at one end, swings down from the horizontal.
+std::vector<Comparison> orders_of_shells() {
+  const Experiment experiment;
+  experiment.level_sheet("strip.obj", 1, 0.25, 12, 3);
+  const std::string scene = R"(
+[time]
+frame_rate = 10
+[solver]
+tolerance = 1e-8
+[[body]]
+mesh = "strip.obj"
+model = "shell"
+compression = "elastic"
+material = { areal_density = 0.2, membrane_warp = 20, bending_warp = 1e-3 }
+[[pin]]
+where = { box = [[-1, -1, -1], [0.09, 1, 1]] }
+[[force]]
+type = "gravity"
+acceleration = [0, -2, 0]
+)";
+  std::vector<Comparison> numbers;
+  for (const auto& [integrator, expected] : {std::pair{"implicit_euler", 1.0}, {"bdf2", 2.0}}) {
+    std::vector<std::vector<Vec3>> ends;
+    for (const int steps : {64, 128, 256}) {
+      Simulation simulation = experiment.start(scene, {fmt::format("solver.integrator={}", integrator),
+                                                       fmt::format("time.steps_per_frame={}", steps)});
+      advance(simulation, 5);
+      ends.push_back(simulation.state().positions);
+    }
+    const double order = std::log2(largest_distance(ends[0], ends[1]) / largest_distance(ends[1], ends[2]));
+    numbers.push_back({fmt::format("order of {}", integrator), expected, order, 0.05, false});
+  }
+  return numbers;
+}
+
 std::vector<Comparison> energy() {
   const Experiment experiment;
   experiment.upright_sheet("flag.obj", 5, 3);
@@ -242,6 +277,8 @@ std::vector<VerifyCase> stepping_cases() {
       {"oscillator", "implicit Euler damps an oscillator by 1/sqrt(1+w^2 dt^2) a step", "closed form", false,
        oscillator},
       {"orders", "halving the step divides the error by 2^order", "theory of the methods", false, orders},
+      {"orders-shell", "halving the step divides the error by 2^order on a strip of cloth that swings",
+       "theory of the methods", false, orders_of_shells},
       {"energy", "what is stored, done and lost adds up, as a share of the energy moved", "conservation",
        false, energy},
       {"momentum", "without forces from outside momentum stays", "conservation", false, momentum},
