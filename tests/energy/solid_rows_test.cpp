@@ -23,7 +23,6 @@ struct PlainLaw {
   struct Constants {
     double modulus;
   };
-  static constexpr auto parameters = NeoHookeanLaw::parameters;
   static Constants constants(double youngs_modulus, double) { return {youngs_modulus}; }
 
   MUSLIN_INLINE static double energy(const Constants& c, double ic, double j) {

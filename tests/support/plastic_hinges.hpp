@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -23,11 +22,12 @@
 #include <utility>
 #include <vector>
 
+#include "support/hinge_stencil.hpp"
+
 #include "muslin/core/error.hpp"
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/elements_methods.hpp"
 #include "muslin/energy/hinge_coupling.hpp"
-#include "muslin/energy/hinge_stencil.hpp"
 #include "muslin/energy/law.hpp"
 #include "muslin/energy/shell_pattern.hpp"
 #include "muslin/potential/history.hpp"
@@ -53,12 +53,6 @@ struct PlasticHingeLaw {
     double slipped;    // α
   };
   static constexpr bool linear = false;
-
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  static constexpr std::array<LawParameter, 2> parameters = {{
-      {"yield_angle", "rad", 0, none, false, "Angle from rest beyond which a hinge stays bent."},
-      {"hardening", "", 0, none, false, "Growth of the yield angle per angle of slip."},
-  }};
 
   MUSLIN_INLINE static double slip(const Constants& c, double w) {
     const double e = w - c.plastic, excess = (e < 0 ? -e : e) - (c.yield + c.hardening * c.slipped);

@@ -11,7 +11,7 @@ namespace {
 MUSLIN_VECTOR_CODE void deviations_of(const Batch<4>& x, const double* rest, double* out) {
   BentHinge h;
   bend_hinge(x, h);
-  HingeStencil::find_deviations(h, rest, out);
+  find_deviations(h, rest, out);
 }
 
 MUSLIN_VECTOR_CODE void gradients_of(const Batch<4>& x, Batch<4>& out) {
@@ -68,7 +68,7 @@ HingeAngles::HingeAngles(const Shell& shell, std::shared_ptr<const SymmetricPatt
     : count_(shell.hinges.size()),
       pattern_(std::move(pattern)),
       slabs_(hinge_vertices(shell), shell.vertex_count()),
-      stencil_(slabs_, shell) {
+      rest_(slabs_.by_entry<double>([&](std::size_t e) { return shell.hinges[e].angle; })) {
   if (pattern_) slots_ = slabs_.slots(*pattern_);
 }
 
@@ -83,7 +83,7 @@ std::vector<double> HingeAngles::deviations(ConstVectors x) const {
     Batch<4> corners;
     double lanes[element_lanes];
     slabs_.gather(first, count, x, corners);
-    deviations_of(corners, stencil_.at(first), lanes);
+    deviations_of(corners, rest_.data() + first, lanes);
     for (int l = 0; l < count; ++l) result[at(slabs_.elements()[at(first + l)])] = lanes[l];
   });
   return result;
@@ -154,7 +154,7 @@ void HingeAngles::assemble(ConstVectors x, std::span<const double> lumped, doubl
     gradients_of(corners, gradient);
     load(lumped, first, count, weights);
     slabs_.corners_in(first, count, slab, rows);
-    HingeStencil::add_squares(weights, gradient, scale, count, rows, slots_.data() + first, blocks.columns);
+    add_angle_squares(weights, gradient, scale, count, rows, slots_.data() + first, blocks.columns);
     if (gradients == nullptr) return;
     for (int l = 0; l < std::min(count, slab.owned_end - first); ++l) {
       Float4* const to = gradients + 4 * at(slabs_.elements()[at(first + l)]);

@@ -14,7 +14,7 @@
 
 #include "muslin/core/vectors.hpp"
 #include "muslin/energy/element_slabs.hpp"
-#include "muslin/energy/hinge_stencil.hpp"
+#include "muslin/energy/hinge_geometry.hpp"
 #include "muslin/energy/shell_pattern.hpp"
 #include "muslin/potential/hessian_sink.hpp"
 #include "muslin/potential/symmetric_pattern.hpp"
@@ -53,7 +53,7 @@ class HingeAngles {
   std::size_t count_;
   std::shared_ptr<const SymmetricPattern> pattern_;
   Slabs slabs_;
-  HingeStencil stencil_;
+  std::vector<double> rest_;         // by entry: θ₀
   std::vector<Slabs::Slots> slots_;  // by entry, with a pattern
 };
 

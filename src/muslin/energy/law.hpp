@@ -3,7 +3,6 @@
 //
 //   Constants     doubles only, derived from the parameters once for each element; with `shared` of any
 //                 type, the same for all elements
-//   parameters    given by the user: name, unit, range, sentence
 //   energy, …     ψ and its derivatives, as the stencil of the element asks for them
 //
 // All functions are of one element and forced inline, so that the stencil's loops over lanes vectorise.
@@ -12,8 +11,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,20 +18,6 @@
 #include "muslin/energy/element_slabs.hpp"
 
 namespace muslin {
-
-/// A parameter of a law, for schemas and messages.
-struct LawParameter {
-  std::string_view name;
-  std::string_view unit;
-  double least = 0;
-  double most = std::numeric_limits<double>::infinity();
-  bool open = false;  ///< the bounds themselves are excluded
-  std::string_view sentence;
-
-  bool allows(double value) const {
-    return open ? value > least && value < most : value >= least && value <= most;
-  }
-};
 
 /// One number per element, by entry of ElementSlabs. If all are equal, one batch is stored and read for every
 /// element.

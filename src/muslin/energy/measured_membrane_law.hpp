@@ -8,8 +8,6 @@
 // constant slope make it MembraneLaw. For triangles. docs/theory/shells.md.
 #pragma once
 
-#include <array>
-
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/cell_buckling.hpp"
 #include "muslin/energy/law.hpp"
@@ -25,10 +23,6 @@ struct MeasuredMembraneLaw {
   };
   static constexpr bool principal = false;
   static constexpr bool shared = true;
-
-  static constexpr std::array<LawParameter, 1> parameters = {
-      {{"poisson", "", 0, 1, false,
-        "Contraction over stretch at rest, the geometric mean of both directions."}}};
 
   MUSLIN_INLINE static double energy(const Constants& c, double area, const Metric& m) {
     const double euu = 0.5 * (m.aa - 1), evv = 0.5 * (m.bb - 1);

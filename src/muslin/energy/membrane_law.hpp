@@ -5,9 +5,6 @@
 // whose threads buckle (cell_buckling.hpp). For triangles.
 #pragma once
 
-#include <array>
-#include <limits>
-
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/cell_buckling.hpp"
 #include "muslin/energy/law.hpp"
@@ -21,15 +18,6 @@ struct MembraneLaw {
     double load_warp, load_weft;  // [N·m]
   };
   static constexpr bool principal = false;
-
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  static constexpr std::array<LawParameter, 4> parameters = {{
-      {"membrane_warp", "N/m", 0, none, false,
-       "Force per width and strain along warp: Young's modulus × thickness."},
-      {"membrane_weft", "N/m", 0, none, false, "Force per width and strain along weft."},
-      {"membrane_shear", "N/m", 0, none, false, "Force per width and radian of shear."},
-      {"poisson", "", -1, 1, true, "Contraction over stretch, the geometric mean of both directions."},
-  }};
 
   MUSLIN_INLINE static double energy(const Constants& c, double area, const Metric& m) {
     return 0.5 * area * (threads(c, area, m).twice_energy + c.g * (m.ab * m.ab));

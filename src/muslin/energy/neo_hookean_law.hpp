@@ -12,9 +12,7 @@
 // small strains have Young's modulus E and Poisson's ratio ν.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/law.hpp"
@@ -26,11 +24,6 @@ struct NeoHookeanLaw {
     double mu, lambda;  // [Pa]
   };
 
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  static constexpr std::array<LawParameter, 2> parameters = {{
-      {"youngs_modulus", "Pa", 0, none, true, "Stress over strain of a bar that is pulled."},
-      {"poisson", "", -1, 0.5, true, "Contraction across over stretch along."},
-  }};
   static Constants constants(double youngs_modulus, double poisson) {
     const double shear = youngs_modulus / (2 * (1 + poisson)), lame = 2 * shear * poisson / (1 - 2 * poisson);
     return {4.0 / 3 * shear, lame + 5.0 / 6 * shear};

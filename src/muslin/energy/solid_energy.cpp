@@ -48,11 +48,11 @@ TetrahedronStencil stencil_of(const ElementSlabs<4>& slabs, const Tetrahedra& te
 
 }  // namespace
 
-void require_moduli(const SolidModuli& moduli, std::span<const LawParameter> parameters) {
-  require(parameters[0].allows(moduli.youngs_modulus) && std::isfinite(moduli.youngs_modulus),
+void require_moduli(const SolidModuli& moduli) {
+  require(moduli.youngs_modulus > 0 && std::isfinite(moduli.youngs_modulus),
           "Young's modulus of a solid is not positive", "give pascal");
-  require(parameters[1].allows(moduli.poisson), "the Poisson ratio of a solid is not between -1 and 0.5",
-          "give 0 to 0.49");
+  require(moduli.poisson > -1 && moduli.poisson < 0.5,
+          "the Poisson ratio of a solid is not between -1 and 0.5", "give 0 to 0.49");
 }
 
 std::shared_ptr<const SymmetricPattern> tetrahedron_pattern(const Lattice& lattice) {

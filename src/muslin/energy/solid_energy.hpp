@@ -15,7 +15,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,8 +31,8 @@ struct SolidModuli {
   double youngs_modulus = 0;
   double poisson = 0;
 };
-/// Throws Error(usage) if a modulus is out of the range of the law's parameters E and ν.
-void require_moduli(const SolidModuli& moduli, std::span<const LawParameter> parameters);
+/// Throws Error(usage) unless E > 0 and −1 < ν < 0.5.
+void require_moduli(const SolidModuli& moduli);
 
 /// Returns the pairs of vertices in a tetrahedron of the lattice.
 std::shared_ptr<const SymmetricPattern> tetrahedron_pattern(const Lattice& lattice);
@@ -101,7 +100,7 @@ class SolidEnergy : public Elements<TetrahedronStencil, Law> {
     if (this->pattern()) springs_ = std::make_shared<const SolidSprings>(lattice, moduli.youngs_modulus);
   }
   static typename Law::Constants constants(const SolidModuli& moduli) {
-    require_moduli(moduli, Law::parameters);
+    require_moduli(moduli);
     return Law::constants(moduli.youngs_modulus, moduli.poisson);
   }
 

@@ -3,9 +3,7 @@
 // when z changes by d.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/law.hpp"
@@ -15,15 +13,6 @@ namespace muslin {
 /// W = ½ k (|z| − r)². A spring no longer than `least` has no direction: it exerts no force, and k I is its
 /// Hessian.
 struct SpringLaw {
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  static constexpr std::array<LawParameter, 3> parameters = {{
-      {"edge_modulus", "N/m²", 0, none, false, "Spring constant over voxel width along voxel edges."},
-      {"face_diagonal_modulus", "N/m²", 0, none, false,
-       "Spring constant over voxel width along face diagonals."},
-      {"body_diagonal_modulus", "N/m²", 0, none, false,
-       "Spring constant over voxel width along body diagonals."},
-  }};
-
   struct Force {
     double f, w;
   };

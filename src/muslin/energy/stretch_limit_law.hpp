@@ -6,9 +6,7 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/law.hpp"
@@ -60,10 +58,6 @@ struct StretchLimitLaw {
     StretchBarrier::Numbers barrier;
   };
   static constexpr bool principal = true;
-
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  static constexpr std::array<LawParameter, 1> parameters = {
-      {{"stretch_limit", "", 1, none, true, "Greatest length over rest length, in every direction."}}};
 
   /// mean + radius > onset², without the root.
   MUSLIN_INLINE static double excess(const Constants& c, const Metric& m) {
