@@ -54,6 +54,7 @@ set(MUSLIN_PUBLIC_HEADERS
     potential/state_arrays.hpp
     potential/step_guard.hpp
     scene/attachment.hpp
+    scene/contact_pair.hpp
     scene/field_force_settings.hpp
     scene/model.hpp
     scene/pressure.hpp

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,13 @@ struct ContactRecord {
     double radius = 0;         ///< half the thickness, or the radius of a ball or capsule [m]
     bool self_contact = true;  ///< true if it touches itself
     bool fixed = false;        ///< a collider that forces do not move
+    std::optional<double> range;  ///< its own d̂ [m]
     std::vector<Vec3> axis;    ///< centre of a ball, ends of a capsule's axis, at the start [m]; else empty
   };
-  double distance = 0;       ///< the contact distance d̂ [m]
+  double distance = 0;       ///< the contact distance d̂ of bodies without their own [m]
   std::vector<Body> bodies;  ///< all that have a surface, in the order of the run's bodies
   ContactExemptions exempt;  ///< at joints; triangles and points are counted over all bodies
+  std::vector<ContactRule> rules;  ///< without friction and stiffness; points are counted over all bodies
 };
 
 /// Returns the object `contact` of run.json.

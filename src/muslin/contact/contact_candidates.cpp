@@ -78,25 +78,33 @@ Vec3 visible_point(const ContactSurface& surface, const ContactPair& pair, const
 
 ContactCandidates::ContactCandidates(std::shared_ptr<const ContactSurface> surface, ConstVectors rest,
                                      double contact_distance)
-    : surface_(std::move(surface)), contact_distance_(contact_distance), search_(surface_, rest) {
+    : surface_(std::move(surface)),
+      contact_distance_(contact_distance),
+      longest_range_(surface_->ranges(contact_distance)[1]),
+      reach_(surface_->rules().thickest() + longest_range_),
+      search_(surface_, rest) {
   if (!(contact_distance > 0))
     throw Error(ErrorKind::usage, "the contact distance is not positive", "give a length in metres");
   // Pairs that are close at rest within a body; boxes already include the radii.
   const std::vector<int> sizes = points_of_bodies(*surface_);
-  double thickest = 0;
+  const double thickest_rule = surface_->rules().thickest();
+  double thickest = thickest_rule / rest_thickness;
   for (std::size_t body = 0; body < sizes.size(); ++body) {
     const ContactBody& b = surface_->bodies()[body];
     if (sizes[body] > 3 && b.self_contact && !b.fixed) thickest = std::max(thickest, 2 * b.radius);
   }
   boxes_ = MovingBoxes(rest.size());
   for (std::size_t p = 0; p < rest.size(); ++p) boxes_.stay(p, rest[p], rest[p], 0);
-  search_.find(boxes_, std::max(thickest, contact_distance / rest_range), found_);
+  search_.find(boxes_, std::max(thickest, longest_range_ / rest_range), found_);
   const auto note = [&](PairKind kind, int first, int second) {
     const std::array<int, 4> points = points_of(*surface_, kind, first, second);
     if (surface_->body_of(points[0]) != surface_->body_of(points[3])) return;
     const ContactPair pair = make_pair(kind, first, second);
     const double distance = pair_geometry(*surface_, pair, rest).distance;
-    if (rest_thickness * distance < pair.thickness || rest_range * distance < pair.range)
+    const bool is_ruled = !surface_->rules().empty();  // by rules that are not yet in force
+    const double thickness = is_ruled ? std::max(pair.thickness, thickest_rule) : pair.thickness,
+                 range = is_ruled ? longest_range_ : pair.range;
+    if (rest_thickness * distance < thickness || rest_range * distance < range)
       rest_distances_.push_back({pair.key(), distance});
   };
   for (const VertexTriangle& p : found_.vertex_triangle) note(PairKind::vertex_triangle, p.point, p.triangle);
@@ -174,9 +182,24 @@ ContactPair ContactCandidates::make_pair(PairKind kind, int first, int second) c
   pair.points = points_of(*surface_, kind, first, second);
   pair.thickness = surface_->radius_of(pair.points[0]) +
                    surface_->radius_of(pair.points[static_cast<std::size_t>(pair.point_count() - 1)]);
-  pair.range = contact_distance_;
+  pair.range = surface_->range(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)],
+                               contact_distance_);
+  if (active_rules_ != 0) follow_rule(pair);
   limit_by_rest(pair);
   return pair;
+}
+
+void ContactCandidates::follow_rule(ContactPair& pair) const {
+  const auto size = static_cast<std::size_t>(first_feature_size(pair.kind)),
+             count = static_cast<std::size_t>(pair.point_count());
+  const std::span<const int> points(pair.points.data(), count);
+  const int found = surface_->rules().find(points.first(size), points.subspan(size), active_rules_);
+  if (found < 0) return;
+  pair.rule = static_cast<std::int8_t>(found);
+  const ContactRule& rule = surface_->rules()[found];
+  const auto radius = [&](int point) { return surface_->is_round(point) ? surface_->radius_of(point) : 0; };
+  if (rule.thickness) pair.thickness = *rule.thickness + radius(points.front()) + radius(points.back());
+  if (rule.range) pair.range = *rule.range;
 }
 
 template <class Pair>
@@ -187,11 +210,13 @@ void ContactCandidates::add_near(PairKind kind, std::span<const Pair> found, Nea
     const auto [first, second] = found[i];
     points[i] = points_of(*surface_, kind, first, second);
   }
-  culling_.find_near(kind, points, contact_distance_, distances.data());
+  culling_.find_near(kind, points, reach_, distances.data());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const auto [first, second] = found[i];
     if (distances[i] < 0 || is_free(kind, first, second) || has_free_points(kind, points[i])) continue;
-    out.pairs.push_back(make_pair(kind, first, second));
+    const ContactPair pair = make_pair(kind, first, second);
+    if (passes(pair)) continue;
+    out.pairs.push_back(pair);
     out.distances.push_back(distances[i]);
   }
 }
@@ -213,7 +238,7 @@ void ContactCandidates::update(ConstVectors begin, ConstVectors end, double marg
       boxes_.move(p, begin[p], end[p], margin);
     }
   }
-  search_.find(boxes_, contact_distance_, found_);
+  search_.find(boxes_, reach_, found_);
   culling_.set_points(*surface_, found_at_, boxes_);
   pairs_.clear();
   least_distances_.clear();
@@ -225,7 +250,7 @@ void ContactCandidates::renew(std::span<const std::uint8_t> moved, ConstVectors 
   const auto has_moved = [&](int p) { return moved[static_cast<std::size_t>(p)] != 0; };
   for (std::size_t p = 0; p < moved.size(); ++p)
     if (moved[p] != 0) boxes_.stay(p, begin[p], end[p], margin);
-  search_.find(boxes_, contact_distance_, found_, moved);
+  search_.find(boxes_, reach_, found_, moved);
   culling_.set_boxes(moved, boxes_);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -274,15 +299,16 @@ void ContactCandidates::add_near_plane(int plane) {
   const Vec3 &n = half_space.normal, extent = n.cwiseAbs();
   const PointBox of_plane = boxes_.around(carrier);
   const double top = n.dot(of_plane.middle()) + extent.dot(of_plane.half());
-  const double radius = surface_->radius_of(half_space.point) + contact_distance_;
+  const double radius = surface_->radius_of(half_space.point) + reach_;
   for (std::size_t p = 0; p < boxes_.size(); ++p) {
     const int point = static_cast<int>(p);
     const PointBox box = boxes_.around(p);
     const double bottom = n.dot(box.middle()) - extent.dot(box.half());
     if (bottom - top > radius + surface_->radius_of(point) || p == carrier) continue;
     if (is_free(PairKind::point_plane, point, plane)) continue;
-    if (surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point)))
-      pairs_.push_back(make_pair(PairKind::point_plane, point, plane));
+    if (!surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point))) continue;
+    const ContactPair pair = make_pair(PairKind::point_plane, point, plane);
+    if (!passes(pair)) pairs_.push_back(pair);
   }
 }
 
@@ -296,7 +322,7 @@ void ContactCandidates::add_near_turning_plane(int plane) {
              v = middle(half_space.span[1]) - a, n = u.cross(v);
   const double r = std::max({half(half_space.point), half(half_space.span[0]), half(half_space.span[1])});
   const double turn = 2 * (2 * r * (u.norm() + v.norm()) + 4 * r * r) / n.norm();
-  const double radius = surface_->radius_of(half_space.point) + contact_distance_;
+  const double radius = surface_->radius_of(half_space.point) + reach_;
   for (int point = 0; point < static_cast<int>(boxes_.size()); ++point) {
     if (!surface_->may_touch(surface_->body_of(point), surface_->body_of(half_space.point)) ||
         is_free(PairKind::point_plane, point, plane))
@@ -304,8 +330,9 @@ void ContactCandidates::add_near_turning_plane(int plane) {
     const Vec3 away = middle(point) - a;
     const double reach = half(point) + r;
     const double least = n.dot(away) / n.norm() - reach - turn * (away.norm() + reach);
-    if (!(least > radius + surface_->radius_of(point)))
-      pairs_.push_back(make_pair(PairKind::point_plane, point, plane));
+    if (least > radius + surface_->radius_of(point)) continue;
+    const ContactPair pair = make_pair(PairKind::point_plane, point, plane);
+    if (!passes(pair)) pairs_.push_back(pair);
   }
 }
 

@@ -25,6 +25,7 @@ struct ContactPair {
                                 ///< its span (−1, −1 if it does not turn)
   int first = 0, second = 0;    ///< the features: point, triangle · edges · point, plane
   PairKind kind = PairKind::vertex_triangle;
+  std::int8_t rule = -1;  ///< of the surface's rules; −1: none
   double thickness = 0;  ///< the distance of the two midsurfaces when they touch [m]
   double range = 0;      ///< the contact distance d̂ of this pair [m]: contact energy acts below this gap
 
@@ -53,8 +54,8 @@ Vec3 visible_point(const ContactSurface& surface, const ContactPair& pair, const
 class ContactCandidates {
  public:
   /// `rest` (#P by 3, [m]): features of one body that are closer at rest than thickness and range get smaller
-  /// ones, so that a body at rest is not in contact with itself. `contact_distance`: d̂ [m]. Errors: usage,
-  /// if it is not positive or sizes do not fit.
+  /// ones, so that a body at rest is not in contact with itself. `contact_distance`: d̂ of bodies without
+  /// their own [m]. Errors: usage, if it is not positive or sizes do not fit.
   ContactCandidates(std::shared_ptr<const ContactSurface> surface, ConstVectors rest,
                     double contact_distance);
 
@@ -64,6 +65,8 @@ class ContactCandidates {
 
   /// Excludes pairs of features with points that are free of each other, from the next update on.
   void ignore_parts(FreeParts parts) { free_parts_ = std::move(parts); }
+  /// Sets the surface's rules that are in force from the next update on; by default none.
+  void apply_rules(ContactRules::Set active) { active_rules_ = active; }
 
   /// Finds the pairs that may come within range while all points move linearly in time from `begin` to `end`
   /// (#P by 3, [m]), each within ± `margin` [m] along every axis. If no displacement exceeds `long_way` [m],
@@ -77,7 +80,8 @@ class ContactCandidates {
 
   const ContactSurface& surface() const { return *surface_; }
   std::shared_ptr<const ContactSurface> shared_surface() const { return surface_; }
-  double contact_distance() const { return contact_distance_; }
+  /// Returns the largest d̂ of a pair [m].
+  double longest_range() const { return longest_range_; }
   std::span<const ContactPair> pairs() const { return pairs_; }
   /// #pairs: lower bound of the distance of each pair at `found_at` [m]; 0 for planes.
   std::span<const float> least_distances() const { return least_distances_; }
@@ -89,6 +93,10 @@ class ContactCandidates {
  private:
   void limit_by_rest(ContactPair& pair) const;
   ContactPair make_pair(PairKind kind, int first, int second) const;
+  void follow_rule(ContactPair& pair) const;
+  bool passes(const ContactPair& pair) const {
+    return pair.rule >= 0 && !surface_->rules()[pair.rule].touches;
+  }
   bool is_free(PairKind kind, int first, int second) const;
   bool has_free_points(PairKind kind, const std::array<int, 4>& points) const;
   void free_edges(int e, int f);
@@ -105,6 +113,9 @@ class ContactCandidates {
 
   std::shared_ptr<const ContactSurface> surface_;
   double contact_distance_;
+  double longest_range_;  ///< of all pairs [m]
+  double reach_;          ///< beyond the radii, within which the search finds pairs [m]
+  ContactRules::Set active_rules_ = 0;
   PairSearch search_;
   PairCulling culling_;
   FeaturePairs found_;

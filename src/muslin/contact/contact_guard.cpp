@@ -91,11 +91,11 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
       candidates_(model_->surface, model_->rest, model_->distance),
       distances_(candidates_),
       limiter_(model_->map, limits_of(*model_)),
-      margin_(margin_share * model_->distance),
+      margin_(margin_share * candidates_.longest_range()),
       edge_(mean_edge(*model_)),
-      longest_(std::max(edges_at_once * edge_, 4 * model_->distance)),
+      longest_(std::max(edges_at_once * edge_, 4 * candidates_.longest_range())),
       longest_push_(pushed_at_once * longest_),
-      friction_{model_->friction, stick_share * model_->distance, stopping_time},
+      friction_{model_->friction, stick_share * model_->surface->ranges(model_->distance)[0], stopping_time},
       x_(model_->map->point_count()),
       to_(model_->map->point_count()) {
   for (const ContactBody& body : model_->surface->bodies()) {
@@ -105,6 +105,19 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
   }
   require_fit(memory_, *model_);
   candidates_.ignore_pairs(memory_.tangled, model_->exempt);
+  candidates_.apply_rules(memory_.rules);
+  rebuild();
+}
+
+void ContactGuard::follow_rules(ConstVectors q, double time) {
+  const ContactRules& rules = model_->surface->rules();
+  const ContactRules::Set now = rules.in_force(time);
+  if (now == memory_.rules && rules.hash() == memory_.rules_hash) return;
+  memory_.rules = now;
+  memory_.rules_hash = rules.hash();
+  memory_.tangled = crossing(q);
+  candidates_.ignore_pairs(memory_.tangled, model_->exempt);
+  candidates_.apply_rules(now);
   rebuild();
 }
 
@@ -339,11 +352,7 @@ std::vector<std::array<int, 2>> ContactGuard::crossing(ConstVectors q) {
   const ContactSurface& surface = *model_->surface;
   model_->map->apply(q, x_);
   IntersectionOptions options;
-  options.wanted = [&](int a, int b) {
-    const auto corners = [&](int t) { return surface.triangles()[static_cast<std::size_t>(t)]; };
-    return surface.may_touch(surface.body_of(corners(a)[0]), surface.body_of(corners(b)[0])) &&
-           !model_->exempt.has(corners(a), a, corners(b), b);
-  };
+  options.wanted = [&](int a, int b) { return model_->forbids_crossing(a, b, memory_.rules); };
   std::vector<std::array<int, 2>> pairs;
   for (const Intersection& i : find_intersections(x_, surface.triangles(), options))
     pairs.push_back({i.first, i.second});

@@ -46,6 +46,10 @@ class ContactGuard : public StepGuard {
   void for_each_contact(const std::function<void(const Contact&)>& visit) const override;
   void end(ConstVectors q) override;
 
+  /// Sets the rules in force at `time` [s] for the next step, from q. Triangles that cross when a rule's
+  /// contact begins are free until they part.
+  void follow_rules(ConstVectors q, double time);
+
   /// Excludes contact between the features of triangles that cross at q, until these triangles part. While
   /// some pairs cross, neighbouring triangles may begin to cross; once no pair crosses, none can cross again.
   void allow_initial_intersections(ConstVectors q);

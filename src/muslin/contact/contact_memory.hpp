@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,8 @@ struct ContactMemory {
       std::numeric_limits<double>::infinity();
   /// Pairs of triangles that have crossed since a tangled start; their features are not in contact.
   std::vector<std::array<int, 2>> tangled;
+  ContactRules::Set rules = 0;   ///< those in force
+  std::uint64_t rules_hash = 0;  ///< of all of them
 
   template <class Self, class Arrays>
   static void name_arrays(Self& self, Arrays& arrays) {
@@ -38,6 +41,8 @@ struct ContactMemory {
     arrays("contact.candidates_margin", self.margin);
     arrays("contact.smallest_gap", self.smallest_gap);
     arrays("contact.tangled", self.tangled);
+    arrays("contact.rules", self.rules);
+    arrays("contact.rules_hash", self.rules_hash);
   }
 };
 

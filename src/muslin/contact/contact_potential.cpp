@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <Eigen/LU>
@@ -29,6 +30,14 @@ Vec3 combined(const MergedContact& contact, const std::array<double, 4>& weights
 }
 
 Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - normal.dot(v) * normal; }
+
+double friction_of(const ContactSurface& surface, const MergedContact& contact, double common) {
+  const std::optional<double> ruled =
+      contact.rule < 0 ? std::nullopt : surface.rules()[contact.rule].friction;
+  return ruled ? *ruled
+               : surface.friction(contact.points[0],
+                                  contact.points[static_cast<std::size_t>(contact.first_size)], common);
+}
 
 constexpr std::uint64_t second_mask = (std::uint64_t{1} << 31) - 1;
 
@@ -94,9 +103,7 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
         for (std::size_t i = begin; i < end; ++i) {
           const MergedContact& contact = contacts_[i];
           if (!(contact.slope < 0) || contact.key == 0) continue;
-          const double coefficient = surface_->friction(
-              contact.points[0], contact.points[static_cast<std::size_t>(contact.first_size)],
-              friction.coefficient);
+          const double coefficient = friction_of(*surface_, contact, friction.coefficient);
           if (!(coefficient > 0)) continue;
           Made& one = out.emplace_back();
           FrictionTerm& sliding = one.sliding;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -25,20 +26,24 @@ void ContactSurface::TriangleLists::assign(std::size_t count, const std::vector<
 }
 
 ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
-                               std::vector<ContactBody> bodies, std::vector<ContactPlane> planes)
+                               std::vector<ContactBody> bodies, std::vector<ContactPlane> planes,
+                               ContactRules rules)
     : triangles_(std::move(triangles)),
       triangle_edges_(triangles_.size(), Vec3i::Constant(-1)),
       ownership_(triangles_.size()),
       body_of_point_(std::move(body_of_point)),
       round_triangles_(body_of_point_.size(), -1),
       bodies_(std::move(bodies)),
-      planes_(std::move(planes)) {
+      planes_(std::move(planes)),
+      rules_(std::move(rules)) {
   const auto points = static_cast<int>(body_of_point_.size());
   for (const int body : body_of_point_) {
     if (body < 0 || static_cast<std::size_t>(body) >= bodies_.size())
       throw Error(ErrorKind::usage, "a contact point has a body that does not exist", "check body_of_point");
   }
   for (const ContactBody& body : bodies_) {
+    if (!(body.range.value_or(1) > 0))
+      throw Error(ErrorKind::usage, "a contact distance is not positive", "give a length in metres");
     if (!(body.radius >= 0)) throw Error(ErrorKind::usage, "a contact radius is negative", "give 0 or more");
     if (body.friction && !(*body.friction >= 0))
       throw Error(ErrorKind::usage, "a friction coefficient is negative", "give 0 or more");
@@ -111,6 +116,19 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
   }
   at_points_.assign(body_of_point_.size(), at_points);
   at_edges_.assign(edges_.size(), at_edges);
+}
+
+std::array<double, 2> ContactSurface::ranges(double common) const {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  const auto take = [&](double range) {
+    least = std::min(least, range);
+    most = std::max(most, range);
+  };
+  for (const ContactBody& body : bodies_)
+    if (!body.fixed) take(body.range.value_or(common));
+  for (const ContactRule& rule : rules_.all())
+    if (rule.range) take(*rule.range);
+  return most > 0 ? std::array{least, most} : std::array{common, common};
 }
 
 }  // namespace muslin

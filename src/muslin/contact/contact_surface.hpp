@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "muslin/contact/contact_rules.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
@@ -33,6 +34,9 @@ struct ContactBody {
   std::optional<double> friction = std::nullopt;
   /// Above 0: the stiffness is 4 m/dt², which stops this mass within a step; `stiffness` is ignored [kg].
   double mass = 0;
+  /// Its contact distance d̂ [m]; none: that of the model. A pair uses the smaller one, unless one of them is
+  /// rigid (has a `mass`) or fixed: then that of the other.
+  std::optional<double> range = std::nullopt;
   bool solid = false;  ///< true if closed surfaces of it have an inside, where nothing else belongs
   /// The order of bodies outward; none: unknown. A body of a higher layer belongs outside one of a lower.
   std::optional<int> layer = std::nullopt;
@@ -64,13 +68,15 @@ class ContactSurface {
   /// negative, a stiffness not positive, two bodies that may touch both have an infinite one, or a normal is
   /// not of length 1 (to 1e-9).
   ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
-                 std::vector<ContactBody> bodies, std::vector<ContactPlane> planes = {});
+                 std::vector<ContactBody> bodies, std::vector<ContactPlane> planes = {},
+                 ContactRules rules = {});
 
   std::size_t point_count() const { return body_of_point_.size(); }
   std::span<const Vec3i> triangles() const { return triangles_; }
   std::span<const Edge> edges() const { return edges_; }
   std::span<const ContactBody> bodies() const { return bodies_; }
   std::span<const ContactPlane> planes() const { return planes_; }
+  const ContactRules& rules() const { return rules_; }
   /// #T by 3; −1 where a codimensional triangle has no edge.
   std::span<const Vec3i> triangle_edges() const { return triangle_edges_; }
   /// Returns the corner opposite to an edge with one triangle; −1 if it has several or no such corner.
@@ -94,6 +100,16 @@ class ContactSurface {
     const double smaller = std::min(of(a), of(b)), larger = std::max(of(a), of(b));
     return (a.mass > 0) != (b.mass > 0) && std::isfinite(larger) ? std::sqrt(smaller * larger) : smaller;
   }
+  /// Returns d̂ of a contact between the bodies of two points [m]; `common` is that of bodies without one.
+  double range(int point_a, int point_b, double common) const {
+    const ContactBody &a = body_at(point_a), &b = body_at(point_b);
+    const double of_a = a.range.value_or(common), of_b = b.range.value_or(common);
+    if (a.fixed || b.fixed) return a.fixed ? of_b : of_a;
+    if ((a.mass > 0) != (b.mass > 0)) return a.mass > 0 ? of_b : of_a;
+    return std::min(of_a, of_b);
+  }
+  /// Returns the smallest and the largest d̂ of all pairs, those of rules included [m].
+  std::array<double, 2> ranges(double common) const;
   /// Returns Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that two bodies of equal μ have
   /// that μ between them, and a frictionless body slides on everything. `common` is the μ of bodies without
   /// one.
@@ -134,6 +150,7 @@ class ContactSurface {
   std::vector<int> round_triangles_;
   std::vector<ContactBody> bodies_;
   std::vector<ContactPlane> planes_;
+  ContactRules rules_;
 };
 
 }  // namespace muslin

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -78,6 +79,13 @@ double range_of(const ContactSurface& surface, const ContactPair& pair, ConstVec
   return sagitta < round_sagitta * pair.range ? 0 : round_range * pair.range;
 }
 
+double stiffness_of(const ContactSurface& surface, const ContactPair& pair, double dt) {
+  const std::optional<double> ruled = pair.rule < 0 ? std::nullopt : surface.rules()[pair.rule].stiffness;
+  return ruled ? *ruled
+               : surface.stiffness(pair.points[0],
+                                   pair.points[static_cast<std::size_t>(pair.point_count() - 1)], dt);
+}
+
 bool is_near(double gap, double range) { return gap > 0 && gap < PairDistances::ranges_known * range; }
 
 /// The triangles of one body that one vertex is near to.
@@ -89,17 +97,19 @@ class Patch {
         distances_(distances) {}
 
   /// Sets the pairs of the vertex with the triangles, in the order of the triangles.
-  void assign(std::span<const int> pairs) {
+  void assign(std::span<const int> pairs, double dt) {
     if (!places_.empty())
       for (const int t : triangles_) places_[static_cast<std::size_t>(t)] = -1;
     indices_ = pairs;
     triangles_.resize(pairs.size());
     ranges_.resize(pairs.size());
+    stiffnesses_.resize(pairs.size());
     if (is_large(pairs.size()) && places_.empty()) places_.assign(surface_.triangles().size(), -1);
     parallel_for(pairs.size(), patch_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         triangles_[k] = pair(k).second;
         ranges_[k] = range_of(surface_, pair(k), distances_.points());
+        stiffnesses_[k] = stiffness_of(surface_, pair(k), dt);
         if (!places_.empty()) places_[static_cast<std::size_t>(triangles_[k])] = static_cast<int>(k);
       }
     });
@@ -115,25 +125,25 @@ class Patch {
   static bool is_large(std::size_t size) { return size > 256; }
 
   /// Appends the terms of triangle k, and those of its edges and corners that no triangle before it has.
-  void add_terms(std::size_t k, double dt, std::vector<ContactTerm>& out) const {
+  void add_terms(std::size_t k, std::vector<ContactTerm>& out) const {
     const ContactPair& own = pair(k);
     if (ranges_[k] > 0) {
-      out.push_back({ContactTerm::Kind::vertex_triangle, own.points, -1, own.key(), own.thickness, ranges_[k],
-                     surface_.stiffness(own.points[0], own.points[3], dt)});
+      out.push_back({ContactTerm::Kind::vertex_triangle, own.rule, own.points, -1, own.key(), own.thickness,
+                     ranges_[k], stiffnesses_[k]});
     }
     const Vec3i &corners = surface_.triangles()[at(triangles_[k])],
                 &edges = surface_.triangle_edges()[at(triangles_[k])];
     for (int i = 0; i < 3; ++i) {
-      if (!is_again(edges, i) && edges[i] >= 0) add_edge(k, edges[i], dt, out);
-      if (!is_again(corners, i)) add_corner(k, corners[i], dt, out);
+      if (!is_again(edges, i) && edges[i] >= 0) add_edge(k, edges[i], out);
+      if (!is_again(corners, i)) add_corner(k, corners[i], out);
     }
   }
 
  private:
-  /// The triangles of the patch that share an edge or a corner: their number, smallest thickness and range.
+  /// The triangles of the patch that share an edge or a corner: their number, and the least of their numbers.
   struct Feature {
     int triangles = 0;
-    double thickness = std::numeric_limits<double>::infinity(), range = thickness;
+    double thickness = std::numeric_limits<double>::infinity(), range = thickness, stiffness = thickness;
   };
 
   static bool is_again(const Vec3i& three, int i) {
@@ -168,40 +178,42 @@ class Patch {
       ++result.triangles;
       result.thickness = std::min(result.thickness, pair(k).thickness);
       result.range = std::min(result.range, ranges_[k]);
+      result.stiffness = std::min(result.stiffness, stiffnesses_[k]);
     }
     return result;
   }
 
-  void add_edge(std::size_t k, int edge, double dt, std::vector<ContactTerm>& out) const {
+  void add_edge(std::size_t k, int edge, std::vector<ContactTerm>& out) const {
     const std::span<const int> triangles = surface_.triangles_at_edge(edge);
     if (!is_first(k, triangles)) return;
     const Feature e = feature(triangles);
     const ContactSurface::Edge& ends = surface_.edges()[at(edge)];
     add({ContactTerm::Kind::vertex_edge,
+         pair(k).rule,
          {vertex_, ends[0], ends[1], -1},
          -1,
          0,
          e.thickness,
          e.range,
-         (1 - e.triangles) * surface_.stiffness(vertex_, ends[0], dt)},
+         (1 - e.triangles) * e.stiffness},
         out);
   }
 
-  void add_corner(std::size_t k, int corner, double dt, std::vector<ContactTerm>& out) const {
+  void add_corner(std::size_t k, int corner, std::vector<ContactTerm>& out) const {
     const std::span<const int> triangles = surface_.triangles_at_point(corner);
     if (!is_first(k, triangles)) return;
-    const double stiffness = surface_.stiffness(vertex_, corner, dt);
     if (corners_only_) {
       // The search finds the centre of a sphere and corners only with the corners' triangles.
       const std::uint64_t key =
           ContactPair::key_of(PairKind::vertex_triangle, corner, surface_.round_triangle(vertex_));
       add({ContactTerm::Kind::vertex_vertex,
+           pair(k).rule,
            {vertex_, corner, -1, -1},
            -1,
            key,
            pair(0).thickness,
            pair(0).range,
-           stiffness},
+           stiffnesses_[0]},
           out);
     }
     const Feature c = feature(triangles);
@@ -220,12 +232,13 @@ class Patch {
       }
     }
     add({ContactTerm::Kind::vertex_vertex,
+         pair(k).rule,
          {vertex_, corner, -1, -1},
          -1,
          0,
          c.thickness,
          c.range,
-         coefficient * stiffness},
+         coefficient * c.stiffness},
         out);
   }
 
@@ -246,7 +259,7 @@ class Patch {
   const PairDistances& distances_;
   std::span<const int> indices_;  ///< into pairs_
   std::vector<int> triangles_;
-  std::vector<double> ranges_;
+  std::vector<double> ranges_, stiffnesses_;
   std::vector<int> places_;  ///< by triangle; −1: none. Empty before the first large patch
   int vertex_ = 0;
   bool corners_only_ = false;  ///< a sphere that some of the triangles are too small to meet as faces
@@ -256,18 +269,17 @@ class Patch {
 void add_term(const PairDistances& distances, std::size_t i, double dt, std::vector<ContactTerm>& out) {
   const ContactSurface& surface = distances.candidates().surface();
   const ContactPair& pair = distances.candidates().pairs()[i];
-  const double stiffness =
-      surface.stiffness(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)], dt);
+  const double stiffness = stiffness_of(surface, pair, dt);
   if (pair.kind == PairKind::point_plane) {
-    out.push_back({ContactTerm::Kind::point_plane, pair.points, pair.second, pair.key(), pair.thickness,
-                   pair.range, stiffness});
+    out.push_back({ContactTerm::Kind::point_plane, pair.rule, pair.points, pair.second, pair.key(),
+                   pair.thickness, pair.range, stiffness});
     return;
   }
   const double factor = edge_factor(surface, pair, distances[i], distances.points());
   const double range = range_of(surface, pair, distances.points());
   if (factor > 0 && range > 0) {
-    out.push_back({ContactTerm::Kind::edge_edge, pair.points, -1, pair.key(), pair.thickness, range,
-                   factor * stiffness});
+    out.push_back({ContactTerm::Kind::edge_edge, pair.rule, pair.points, -1, pair.key(), pair.thickness,
+                   range, factor * stiffness});
   }
 }
 
@@ -275,6 +287,7 @@ void add_term(const PairDistances& distances, std::size_t i, double dt, std::vec
 MergedContact reduced(const ContactTerm& term, const PairGeometry& at) {
   MergedContact contact;
   contact.key = term.key;
+  contact.rule = term.rule;
   contact.normal = at.normal;
   int count = 0;
   const auto take = [&](int from, int to) {
@@ -436,18 +449,17 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt
         Patch patch(distances);
         for (std::size_t p = begin; p < end; ++p) {
           if (Patch::is_large(pairs_of(p).size())) continue;
-          patch.assign(pairs_of(p));
-          for (std::size_t k = 0; k < patch.size(); ++k) patch.add_terms(k, dt, out);
+          patch.assign(pairs_of(p), dt);
+          for (std::size_t k = 0; k < patch.size(); ++k) patch.add_terms(k, out);
         }
       }));
   Patch large(distances);
   for (std::size_t p = 0; p < patches; ++p) {
     if (!Patch::is_large(pairs_of(p).size())) continue;
-    large.assign(pairs_of(p));
+    large.assign(pairs_of(p), dt);
     append(parallel_collect<ContactTerm>(large.size(), patch_grain,
                                          [&](std::size_t begin, std::size_t end, auto& out) {
-                                           for (std::size_t k = begin; k < end; ++k)
-                                             large.add_terms(k, dt, out);
+      for (std::size_t k = begin; k < end; ++k) large.add_terms(k, out);
                                          }));
   }
   return terms;
@@ -493,7 +505,10 @@ std::vector<MergedContact> merged_contacts(const ContactSurface& surface, std::s
     same.curvature += contact.curvature;
     same.stiffness += contact.stiffness;
     same.magnitude += contact.magnitude;
-    if (same.key == 0) same.key = contact.key;
+    if (same.key == 0) {
+      same.key = contact.key;
+      same.rule = contact.rule;
+    }
   }
   std::erase_if(merged, [](const MergedContact& contact) {
     return contact.stiffness == 0 && std::abs(contact.slope) <= rounding * contact.magnitude;

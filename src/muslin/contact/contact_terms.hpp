@@ -34,6 +34,7 @@ namespace muslin {
 struct ContactTerm {
   enum class Kind : std::uint8_t { point_plane, vertex_triangle, vertex_edge, vertex_vertex, edge_edge };
   Kind kind = Kind::point_plane;
+  std::int8_t rule = -1;                         ///< as in ContactPair
   std::array<int, 4> points = {-1, -1, -1, -1};  ///< of the first feature, then of the second; −1: none
   int plane = -1;                                ///< of point_plane
   std::uint64_t key = 0;            ///< ContactPair::key() of its pair; 0 for subtracted edges and corners
@@ -54,6 +55,7 @@ std::vector<ContactTerm> contact_terms(const PairDistances& distances, double dt
 struct MergedContact {
   std::array<int, 4> points = {-1, -1, -1, -1};
   int first_size = 1;
+  std::int8_t rule = -1;            ///< of the same term as the key
   std::uint64_t key = 0;            ///< of the first of its terms that has one
   std::array<double, 4> weights{};  ///< ∂d/∂xᵢ = weights[i] · normal
   Vec3 normal = Vec3::Zero();

@@ -52,7 +52,8 @@ std::string feature_name(const ContactModel& model, int triangle, int body) {
 
 }  // namespace
 
-std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, std::size_t limit) {
+std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, double time,
+                                     std::size_t limit) {
   const ContactSurface& surface = *model.surface;
   std::vector<Vec3> x(surface.point_count());
   model.map->apply(q, x);
@@ -61,15 +62,14 @@ std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, 
   std::vector<Crossing> all;
   IntersectionOptions options;
   options.limit = limit;
-  options.wanted = [&](int a, int b) {
-    return surface.may_touch(body_of(a), body_of(b)) &&
-           !model.exempt.has(surface.triangles()[at(a)], a, surface.triangles()[at(b)], b);
-  };
+  const ContactRules::Set rules = surface.rules().in_force(time);
+  options.wanted = [&](int a, int b) { return model.forbids_crossing(a, b, rules); };
   for (const Intersection& i : find_intersections(x, surface.triangles(), options))
     all.push_back({Crossing::Kind::crossing, body_of(i.first), body_of(i.second), i.first, i.second, i.at});
 
   ContactCandidates candidates(model.surface, model.rest, model.distance);
   candidates.ignore_pairs({}, model.exempt);
+  candidates.apply_rules(rules);
   candidates.update(x, x, 0);
   const Owners owners(surface);
   std::vector<Crossing> close;
@@ -154,8 +154,8 @@ std::string advice(const ContactModel& model, ConstVectors q, std::span<const Cr
                   : "move them apart";
 }
 
-void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& place) {
-  const std::vector<Crossing> found = one_of_each_pair(model, find_crossings(model, q));
+void refuse_crossings(const ContactModel& model, ConstVectors q, double time, const Place& place) {
+  const std::vector<Crossing> found = one_of_each_pair(model, find_crossings(model, q, time));
   if (found.empty()) return;
   std::string list;
   for (std::size_t i = 0; i < std::min(found.size(), listed); ++i)

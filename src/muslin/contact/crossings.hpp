@@ -29,10 +29,11 @@ struct Crossing {
   friend bool operator==(const Crossing&, const Crossing&) = default;
 };
 
-/// Returns the first `limit` crossings at q (#V by 3, [m]): first triangles that meet, in ascending order,
-/// then pairs that are too close; each pair of triangles once. Pairs of bodies that may not touch are left
-/// out. Errors: usage, if a position is not finite.
-std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, std::size_t limit = 1000000);
+/// Returns the first `limit` crossings at q (#V by 3, [m]) under the rules in force at `time` [s]: first
+/// triangles that meet, in ascending order, then pairs that are too close; each pair of triangles once. Pairs
+/// of bodies that may not touch are left out. Errors: usage, if a position is not finite.
+std::vector<Crossing> find_crossings(const ContactModel& model, ConstVectors q, double time = 0,
+                                     std::size_t limit = 1000000);
 
 /// Returns the first crossing of each pair of faces. Two polygons of the user's mesh may cross in several
 /// pairs of their triangles.
@@ -45,6 +46,6 @@ std::string describe(const ContactModel& model, const Crossing& crossing);
 std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found);
 
 /// Throws Error(input) at `place` that lists the first few crossings, if there are any.
-void refuse_crossings(const ContactModel& model, ConstVectors q, const Place& place = {});
+void refuse_crossings(const ContactModel& model, ConstVectors q, double time = 0, const Place& place = {});
 
 }  // namespace muslin

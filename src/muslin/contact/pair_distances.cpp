@@ -52,7 +52,7 @@ void PairDistances::update(ConstVectors x) {
   });
   const std::span<const ContactPair> pairs = candidates_->pairs();
   const std::span<const float> distances = candidates_->least_distances();
-  const double reach = ranges_known * candidates_->contact_distance();
+  const double reach = ranges_known * candidates_->longest_range();
   geometry_.resize(pairs.size());
   known_.resize(pairs.size());
   parallel_for(pairs.size(), distance_grain, [&](std::size_t begin, std::size_t end) {
@@ -78,7 +78,7 @@ double PairDistances::smallest_gap() const {
   double gap = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (known_[i] != 0) gap = std::min(gap, geometry_[i].distance - pairs[i].thickness);
-  return gap <= candidates_->contact_distance() ? gap : std::numeric_limits<double>::infinity();
+  return gap <= candidates_->longest_range() ? gap : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace muslin

@@ -17,7 +17,8 @@ namespace muslin {
 
 class PairDistances {
  public:
-  /// The geometry is known for all pairs whose gap is less than this multiple of the contact distance.
+  /// The geometry is known for all pairs whose gap is less than this multiple of the longest contact
+  /// distance of any pair.
   static constexpr double ranges_known = 1.5;
 
   /// `candidates` must outlive this.
@@ -37,8 +38,8 @@ class PairDistances {
   /// Computes the geometry of pair i if not known; several threads may call it, each for its own pairs.
   const PairGeometry& find(std::size_t i);
 
-  /// Returns the smallest gap of all pairs [m]; infinity if it is not below the contact distance. A gap below
-  /// the contact distance is the smallest one of the whole surface.
+  /// Returns the smallest gap of all pairs [m]; infinity if it is not below the longest contact distance. A
+  /// gap below it is the smallest one of the whole surface.
   double smallest_gap() const;
 
  private:

@@ -101,6 +101,7 @@ CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record
     contact_body.radius = body.radius;
     contact_body.self_contact = body.self_contact;
     contact_body.fixed = body.fixed;
+    contact_body.range = body.range;
     bodies.push_back(contact_body);
     bodies_.push_back(body);
     places_.push_back(place);
@@ -108,10 +109,15 @@ CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record
   contact_.exempt = record.exempt;
   for (auto* pairs : {&contact_.exempt.point_triangles, &contact_.exempt.point_planes})
     for (std::array<int, 2>& pair : *pairs) pair[0] += points_added_before(record, pair[0]);
+  std::vector<ContactRule> rules = record.rules;
+  for (ContactRule& rule : rules)
+    for (std::vector<int>& side : rule.sides)
+      for (int& point : side) point += points_added_before(record, point);
   contact_.distance = record.distance;
   contact_.map = std::make_shared<SurfaceMap>(SurfaceMap::identity(contact_.rest.size()));
   contact_.surface = std::make_shared<ContactSurface>(std::move(triangles), std::move(body_of_point),
-                                                      std::move(bodies), std::move(planes));
+                                                      std::move(bodies), std::move(planes),
+                                                      ContactRules(std::move(rules), contact_.rest.size()));
 }
 
 std::vector<Vec3> CachedSurfaces::points(int frame) const {
@@ -131,8 +137,8 @@ std::vector<Vec3> CachedSurfaces::points(int frame) const {
   return all;
 }
 
-std::vector<Crossing> CachedSurfaces::crossings(ConstVectors points) const {
-  std::vector<Crossing> found = find_crossings(contact_, points);
+std::vector<Crossing> CachedSurfaces::crossings(int frame, ConstVectors points) const {
+  std::vector<Crossing> found = find_crossings(contact_, points, time(frame));
   std::erase_if(found, [&](const Crossing& c) {
     const auto is_round = [&](int body) { return !bodies_[at(body)].axis.empty(); };
     return c.kind == Crossing::Kind::too_close && !is_round(c.first_body) && !is_round(c.second_body);
@@ -140,16 +146,17 @@ std::vector<Crossing> CachedSurfaces::crossings(ConstVectors points) const {
   return one_of_each_pair(contact_, found);
 }
 
-std::optional<Gap> CachedSurfaces::smallest_gap(ConstVectors points) const {
+std::optional<Gap> CachedSurfaces::smallest_gap(int frame, ConstVectors points) const {
   const ContactSurface& surface = *contact_.surface;
   ContactCandidates candidates(contact_.surface, contact_.rest, contact_.distance);
   candidates.ignore_pairs({}, contact_.exempt);
+  candidates.apply_rules(surface.rules().in_force(time(frame)));
   candidates.update(points, points, 0);
   std::optional<Gap> smallest;
   for (const ContactPair& pair : candidates.pairs()) {
     const PairGeometry geometry = pair_geometry(surface, pair, points);
     const double size = geometry.distance - pair.thickness;
-    if (size >= (smallest ? smallest->size : contact_.distance)) continue;
+    if (size >= (smallest ? smallest->size : candidates.longest_range())) continue;
     const int last = pair.points[at(pair.point_count() - 1)];
     const auto [a, b] = std::minmax({surface.body_of(pair.points[0]), surface.body_of(last)});
     smallest = Gap{size, contact_.names[at(a)], contact_.names[at(b)],

@@ -33,16 +33,18 @@ class CachedSurfaces {
 
   /// Returns the points of all surfaces at a frame [m]. Errors: file.
   std::vector<Vec3> points(int frame) const;
-  /// Returns the triangles that cross by exact arithmetic, and points inside of balls and capsules or beneath
-  /// planes.
-  std::vector<Crossing> crossings(ConstVectors points) const;
-  /// Returns the smallest gap; nothing if all are wider than the contact distance.
-  std::optional<Gap> smallest_gap(ConstVectors points) const;
+  /// Returns the triangles that cross by exact arithmetic at the points of a frame, and points inside of
+  /// balls and capsules or beneath planes.
+  std::vector<Crossing> crossings(int frame, ConstVectors points) const;
+  /// Returns the smallest gap at the points of a frame; nothing if all are wider than the contact distance.
+  std::optional<Gap> smallest_gap(int frame, ConstVectors points) const;
 
   /// Returns one line about a crossing: which faces of which bodies, and where.
   std::string describe(const Crossing& crossing) const { return muslin::describe(contact_, crossing); }
 
  private:
+  double time(int frame) const { return frame / run_.frame_rate(); }
+
   const RunReader& run_;
   std::vector<ContactRecord::Body> bodies_;
   std::vector<int> places_;  ///< #bodies_, in the run

@@ -72,7 +72,7 @@ void search(const RunReader& run, const CachedSurfaces* surfaces, const Progress
       continue;
     }
     if (surfaces == nullptr) continue;
-    const std::vector<Crossing> found = surfaces->crossings(surfaces->points(frame));
+    const std::vector<Crossing> found = surfaces->crossings(frame, surfaces->points(frame));
     if (found.empty()) continue;
     CrossingFrame crossing{frame, found.size(), {}, {}};
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -91,7 +91,7 @@ void find_places(const RunReader& run, const CachedSurfaces* surfaces, RunEviden
   if (std::isfinite(narrowest->min_distance) && surfaces != nullptr) {
     const int frame = static_cast<int>(narrowest - rows.begin());
     evidence.frame_of_gap = frame;
-    if (evidence.is_finite(frame)) evidence.gap = surfaces->smallest_gap(surfaces->points(frame));
+    if (evidence.is_finite(frame)) evidence.gap = surfaces->smallest_gap(frame, surfaces->points(frame));
   }
   const auto longest = std::max_element(
       rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.max_stretch < b.max_stretch; });

@@ -13,6 +13,7 @@
 #include "muslin/contact/contact_energy.hpp"
 #include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
+#include "muslin/scene/build_contact_rules.hpp"
 #include "muslin/scene/joint_exemptions.hpp"
 
 namespace muslin {
@@ -81,6 +82,8 @@ class ContactBuilder {
       planes_.push_back(plane);
     }
     ContactBody body = part.body;
+    const double range = std::min(part.size > 0 ? size_share * part.size : infinite, edge_share * part.edge);
+    if (!scene_.contact.distance && std::isfinite(range)) body.range = range;
     for (int& vertex : body.frame)
       if (vertex >= 0) vertex += first_vertex;
     bodies_.push_back(body);
@@ -100,22 +103,25 @@ class ContactBuilder {
     model->distance =
         scene_.contact.distance.value_or(std::min(size_share * largest_, edge_share * shortest_edge_));
     model->friction = scene_.contact.friction;
-    model->limits.gap_floor = floor_share * model->distance;
     model->limits.prescribed = std::move(prescribed_);
     model->limits.groups = std::move(groups_);
     model->rest = std::move(rest_);
     model->names = std::move(names_);
     model->faces = std::move(faces_);
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const double force = -contact_law(0.5 * model->distance, model->distance).slope;
+      const double range = bodies_[b].range.value_or(model->distance);
+      const double force = -contact_law(0.5 * range, range).slope;
       const double carrying = weights_[b] / (carrying_share * force);
       bodies_[b].stiffness = std::max(bodies_[b].stiffness, carrying);
     }
-    model->surface = std::make_shared<ContactSurface>(std::move(triangles_), std::move(body_of_point_),
-                                                      std::move(bodies_), std::move(planes_));
     model->map =
         std::make_shared<SurfaceMap>(is_identity() ? SurfaceMap::identity(model_.vertex_count())
                                                    : SurfaceMap(model_.vertex_count(), offsets_, entries_));
+    ContactRules rules = build_contact_rules(model_, {model->names, body_of_point_, *model->map});
+    model->surface =
+        std::make_shared<ContactSurface>(std::move(triangles_), std::move(body_of_point_), std::move(bodies_),
+                                         std::move(planes_), std::move(rules));
+    model->limits.gap_floor = floor_share * model->surface->ranges(model->distance)[0];
     if (!model_.attachments.empty()) model->exempt = exemptions_at_joints(model_, *model);
     model_.contact = model;
   }
@@ -154,30 +160,35 @@ void warn_of_pressed_start(Model& model) {
   const ContactSurface& surface = *contact.surface;
   ContactCandidates candidates(contact.surface, contact.rest, contact.distance);
   candidates.ignore_pairs({}, contact.exempt);
+  candidates.apply_rules(surface.rules().in_force(0));
   candidates.update(contact.rest, contact.rest, 0);
-  std::map<std::pair<int, int>, double> gaps;  // the smallest, by bodies
+  struct Gap {
+    double size, range;
+  };
+  std::map<std::pair<int, int>, Gap> gaps;  // the smallest, by bodies
   for (const ContactPair& pair : candidates.pairs()) {
     const int first = surface.body_of(pair.points[0]);
     const int second = surface.body_of(pair.points[static_cast<std::size_t>(pair.point_count() - 1)]);
     if (first == second) continue;
     const double gap = pair_geometry(surface, pair, contact.rest).distance - pair.thickness;
     if (gap >= pressed_share * pair.range) continue;
-    const auto [at, is_new] = gaps.try_emplace(std::minmax(first, second), gap);
-    if (!is_new) at->second = std::min(at->second, gap);
+    const auto [at, is_new] = gaps.try_emplace(std::minmax(first, second), Gap{gap, pair.range});
+    if (!is_new && gap < at->second.size) at->second = {gap, pair.range};
   }
   if (gaps.empty()) return;
   for (const Crossing& crossing : find_crossings(contact, model.rest_positions))
     gaps.erase(std::minmax(crossing.first_body, crossing.second_body));
   if (gaps.empty()) return;
-  const auto closest = std::min_element(gaps.begin(), gaps.end(),
-                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto closest = std::min_element(
+      gaps.begin(), gaps.end(), [](const auto& a, const auto& b) { return a.second.size < b.second.size; });
   const auto name = [&](int body) { return contact.names[static_cast<std::size_t>(body)]; };
   std::string others;
   if (gaps.size() > 1) others = fmt::format(" (the closest of {} such pairs)", gaps.size());
   model.warnings.push_back(fmt::format(
       "\"{}\" and \"{}\" start with a gap of {:.3g} m{}, and contact, which acts within {:.3g} m, pushes "
       "them apart at once; set `contact.distance` below the gap, or move them apart",
-      name(closest->first.first), name(closest->first.second), closest->second, others, contact.distance));
+      name(closest->first.first), name(closest->first.second), closest->second.size, others,
+      closest->second.range));
 }
 
 }  // namespace

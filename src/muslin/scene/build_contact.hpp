@@ -12,8 +12,8 @@ namespace muslin {
 /// each kind states its surface, thickness and stiffness; contact with a collider has the stiffness of the
 /// other body.
 ///
-/// The default of d̂ is 1/500 of the longest side of the largest body, but at most a fifth of the mean edge
-/// of any body's surface.
+/// The default of d̂ is that of each body: 1/500 of its longest side, but at most a fifth of the mean edge of
+/// its surface (ContactSurface::range says which holds for a pair).
 ///
 /// Needs all components. Adds to model.warnings, for example if bodies start so close that contact pushes
 /// them apart. Errors: input, if the integrator is explicit.

@@ -82,9 +82,26 @@ Json list_of(const Model& model, bool colliders) {
 /// Returns null if nothing can touch.
 Json contact_json(const Model& model) {
   if (!model.contact) return nullptr;
-  return {{"distance", model.contact->distance},
-          {"friction", model.contact->friction},
-          {"triangles", model.contact->surface->triangles().size()}};
+  const ContactModel& contact = *model.contact;
+  const ContactSurface& surface = *contact.surface;
+  Json json = {{"distance", surface.ranges(contact.distance)[1]},
+               {"friction", contact.friction},
+               {"triangles", surface.triangles().size()}};
+  for (std::size_t b = 0; b < surface.bodies().size(); ++b)
+    if (const ContactBody& body = surface.bodies()[b]; !body.fixed)
+      json["distances"].push_back(
+          {{"body", contact.names[b]}, {"distance", body.range.value_or(contact.distance)}});
+  json["rules"] = surface.rules().all().size();
+  return json;
+}
+
+std::string contact_text(const ContactModel& contact) {
+  const auto [least, most] = contact.surface->ranges(contact.distance);
+  std::string text = least < most ? fmt::format("contact: within {:.3g} to {:.3g} m", least, most)
+                                  : fmt::format("contact: within {:.3g} m", most);
+  text += fmt::format(", friction {:.3g}", contact.friction);
+  const std::size_t rules = contact.surface->rules().all().size();
+  return text + (rules > 0 ? fmt::format(", {} for pairs\n", counted(rules, "rule")) : "\n");
 }
 
 Json crossings_json(const Model& model, std::span<const Crossing> crossings) {
@@ -188,10 +205,7 @@ std::string describe_text(const Model& model, std::span<const Crossing> crossing
   const Scene& scene = model.scene;
   std::string text = scene.title + "\n";
   for (const Component& body : model.bodies) text += body.description() + maps_text(body);
-  if (model.contact) {
-    text += fmt::format("contact: within {:.3g} m, friction {:.3g}\n", model.contact->distance,
-                        model.contact->friction);
-  }
+  if (model.contact) text += contact_text(*model.contact);
   for (const Pin& pin : model.pins) {
     text +=
         fmt::format("pin {}: {}\n", pin.name, counted(pin.vertices.size(), "held vertex", "held vertices"));

@@ -1,5 +1,8 @@
 #include "muslin/scene/pin_table.hpp"
 
+#include <algorithm>
+
+#include "muslin/core/nearest_name.hpp"
 #include "muslin/scene/common_keys.hpp"
 #include "muslin/scene/selection_table.hpp"
 #include "muslin/schema/declare.hpp"
@@ -68,6 +71,11 @@ schema::Table declare_pin() {
                                                    motion_key()
                                                        .excludes("sequence", both_move("keyframes"))
                                                        .means("motion: a list of tables; times ascend")));
+  table.keys.push_back(schema::texts("ignore", &PinSettings::ignore)
+                           .otherwise("none")
+                           .shown_if<PinSettings>([](const PinSettings& pin) { return !pin.ignore.empty(); })
+                           .means("bodies and colliders that the held vertices, with the edges and triangles "
+                                  "at them, pass through while the pin holds"));
   schema::add_rule<PinSettings>(table, [](const PinSettings& pin, const schema::Subject& subject) {
     check_window(pin.from, pin.until, subject);
     if (!pin.is_soft() && (pin.weight != 1 || !pin.variations.empty()))
@@ -96,6 +104,12 @@ void finish_pin(const TomlTable& table, std::size_t index, PinSettings& pin, con
     throw table.error("sequence", "a rigid body does not follow a sequence", "move it by `keyframes`");
   } else if (pin.motion.scales()) {
     throw table.error("keyframes", "a rigid body is not scaled", "take `scale` out");
+  }
+  const std::vector<std::string> names = all_names(scene);
+  for (const std::string& body : pin.ignore) {
+    if (std::find(names.begin(), names.end(), body) == names.end())
+      throw table.error("ignore", fmt::format("there is no body or collider `{}`", body),
+                        name_advice(body, names));
   }
   require_new_name(table, scene.pins, "pin", "pin", pin.name);
 }

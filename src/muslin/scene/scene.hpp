@@ -22,6 +22,7 @@
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/io/mesh_file.hpp"
 #include "muslin/scene/attachment.hpp"
+#include "muslin/scene/contact_pair.hpp"
 #include "muslin/scene/pressure.hpp"
 #include "muslin/schema/own_settings.hpp"
 #include "muslin/solver/solver.hpp"
@@ -50,6 +51,7 @@ struct ContactSettings {
   std::optional<double> distance;  ///< d̂ [m]; default: see build_contact.hpp
   double friction = 0.3;           ///< Coulomb's μ of bodies without their own
   TangledStart tangled = TangledStart::repair;
+  std::vector<ContactPairSettings> pairs;  ///< of several that match, the last one in force holds
   Place place;
 };
 
@@ -66,6 +68,7 @@ struct PinSettings {
   std::optional<Vec3> pivot;  ///< of the motion [m]; default: the centre of the held vertices at rest
   std::string sequence;       ///< in place of the motion: path of a file of moving points; empty: none
   Place sequence_place;
+  std::vector<std::string> ignore;  ///< bodies and colliders that the held vertices pass through
   Place place;
 
   bool is_soft() const { return stiffness || time; }

@@ -156,6 +156,33 @@ const schema::Table& solver_table() {
   return table;
 }
 
+schema::Key pair_key() {
+  Key key =
+      schema::custom<ContactSettings>(
+          "pair", {Type::tables},
+          [](const Key& k, const TomlTable& contact, ContactSettings& settings) {
+            for (const TomlValue& value : *contact.array(k.name, "tables, [[contact.pair]]")) {
+              const std::string title = fmt::format("[[contact.pair]] {}", settings.pairs.size());
+              contact_pair_table().read(contact_pair_table().open(value, title),
+                                        settings.pairs.emplace_back());
+            }
+          },
+          [](const Key& k, const ContactSettings& settings, TomlValue& out) {
+            TomlValue pairs = schema::list({});
+            for (const ContactPairSettings& pair : settings.pairs)
+              pairs.items.push_back(contact_pair_table().write(pair));
+            schema::append(out, k.name, std::move(pairs));
+          })
+          .shown_if<ContactSettings>([](const ContactSettings& contact) { return !contact.pairs.empty(); })
+          .means("how two of them meet, in place of what they say of themselves");
+  key.table = contact_pair_table;
+  key.check = [](const Key&, const void* s, const schema::Subject&) {
+    for (const ContactPairSettings& pair : static_cast<const ContactSettings*>(s)->pairs)
+      contact_pair_table().check(pair, schema::Subject("[[contact.pair]]", pair.place));
+  };
+  return key;
+}
+
 const schema::Table& contact_table() {
   static const schema::Table table = schema::table_of<ContactSettings>(
       "[contact]",
@@ -173,7 +200,8 @@ const schema::Table& contact_table() {
        schema::word("tangled", &ContactSettings::tangled, {"refuse", "repair", "ignore"})
            .means(
                "a start at which surfaces cross: `\"refuse\"` it · `\"repair\"` it before the first frame · "
-               "`\"ignore\"`: leave them free of each other until they part")});
+               "`\"ignore\"`: leave them free of each other until they part"),
+       pair_key()});
   return table;
 }
 
@@ -256,7 +284,10 @@ schema::Table declare_scene() {
                 schema::sections("collider", &Scene::colliders, collider_table, finish_collider)
                     .means("obstacles and rigid bodies"),
                 schema::section("contact", &Scene::contact, contact_table,
-                                [](const TomlTable&, Scene& scene) { scene.contact.given = true; })
+                                [](const TomlTable&, Scene& scene) {
+                                  scene.contact.given = true;
+                                  check_contact_pairs(scene);
+                                })
                     .may_change_on_resume()
                     .otherwise("see below")
                     .means("contact distance and friction"),

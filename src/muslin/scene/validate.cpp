@@ -55,11 +55,15 @@ void validate(const Scene& scene) {
   check_names("component", scene.components, names);
   scene_table().check(scene, Subject("the scene", {scene.file.string()}));
   const std::vector<std::string> movable = movable_names(scene);
+  check_contact_pairs(scene);
   for (const ForceSettings& force : scene.forces) check_force(scene, force, movable);
   for (const PressureSettings& pressure : scene.pressures)
     check_body_name(subject_of("[[pressure]]", pressure), pressure.body, movable);
-  for (const PinSettings& pin : scene.pins) check_body_name(subject_of("[[pin]]", pin), pin.body, movable);
   const std::vector<std::string> all = all_names(scene);  // probes may be on colliders that stand still
+  for (const PinSettings& pin : scene.pins) {
+    check_body_name(subject_of("[[pin]]", pin), pin.body, movable);
+    for (const std::string& body : pin.ignore) check_body_name(subject_of("[[pin]]", pin), body, all);
+  }
   for (const AttachmentSettings& attachment : scene.attachments) {
     check_body_name(subject_of("[[attachment]]", attachment), attachment.body, movable);
     check_body_name(subject_of("[[attachment]]", attachment), attachment.to, all);

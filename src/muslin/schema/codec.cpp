@@ -44,6 +44,23 @@ void WordCodec::check_index(const Key& key, std::size_t index, const Subject& su
                         fmt::format("use one of {}", name_list(key.choices)));
 }
 
+TomlValue TextsCodec::write(const Key&, const Texts& texts) const {
+  TomlValue items = list({});
+  for (const std::string& text : texts) items.items.push_back(words(text));
+  return items;
+}
+
+TextsCodec::Texts TextsCodec::read_texts(const Key& key, const TomlTable& table) {
+  Texts texts;
+  for (const TomlValue& item : *table.array(key.name, "texts in quotes")) {
+    if (item.type != TomlValue::Type::string)
+      throw Error(ErrorKind::input, item.place, fmt::format("an item of `{}` is no text", key.name),
+                  fmt::format("give {}", described(key)));
+    texts.push_back(item.string);
+  }
+  return texts;
+}
+
 Vec3 VectorCodec::read_vector(const Key& key, const TomlTable& table) {
   return to_vector(*table.find(key.name), fmt::format("`{}` of {}", key.name, table.title()), key.unit,
                    key.range);

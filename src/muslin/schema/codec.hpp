@@ -64,6 +64,22 @@ struct TextCodec {
   void check(const Key&, const std::string&, const Subject&) const {}
 };
 
+struct TextsCodec {
+  using Texts = std::vector<std::string>;
+
+  std::vector<Type> types() const { return {Type::texts}; }
+  Range range() const { return {}; }
+  template <class T>
+  T read(const Key& key, const TomlTable& table) const {
+    return read_texts(key, table);
+  }
+  TomlValue write(const Key&, const Texts& texts) const;
+  void check(const Key&, const Texts&, const Subject&) const {}
+
+ private:
+  static Texts read_texts(const Key& key, const TomlTable& table);
+};
+
 /// The value is one of the key's choices as a text, or the enumerator at its place.
 struct WordCodec {
   std::vector<Type> types() const { return {Type::word}; }

@@ -180,6 +180,10 @@ template <class S, class T>
 Declaration text(std::string name, T S::* member) {
   return stored(std::move(name), member, TextCodec{});
 }
+template <class S, class T>
+Declaration texts(std::string name, T S::* member) {
+  return stored(std::move(name), member, TextsCodec{});
+}
 /// The member is a text, or an enumeration whose values are in the order of `choices`.
 template <class S, class T>
 Declaration word(std::string name, T S::* member, std::vector<std::string> choices) {

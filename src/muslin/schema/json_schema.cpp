@@ -52,6 +52,11 @@ Json type_schema(const Key& key, Type type) {
       return {{"type", "boolean"}};
     case Type::text:
       return {{"type", "string"}};
+    case Type::texts: {
+      Json item = {{"type", "string"}};
+      if (key.table != nullptr) item = {{"anyOf", Json::array({item, reference(key.table())})}};
+      return list_schema(item, key.count);
+    }
     case Type::path:
       return {{"type", "string"}, {"minLength", 1}};
     case Type::word:

@@ -21,6 +21,7 @@ enum class Type {
   whole_number,
   truth,  ///< true or false
   text,
+  texts,   ///< a list of texts; where the key has a table, any of them may be a table instead
   path,    ///< a text that names a file
   word,    ///< one of Key::choices
   vector,  ///< three numbers
@@ -43,7 +44,7 @@ struct Key {
   std::string unit;                  ///< empty: none
   Range range;                       ///< of numbers and of the components of vectors
   std::vector<std::string> choices;  ///< words
-  std::size_t count = 0;             ///< of `points`; 0: any. Of a curve: the most
+  std::size_t count = 0;             ///< of `points` and `texts`; 0: any. Of a curve: the most
   std::string meaning;
   std::string otherwise;  ///< the default in words if it is not a constant
   bool required = false;

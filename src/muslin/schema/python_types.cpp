@@ -42,6 +42,9 @@ std::string type_of(const Key& key, Type type) {
       return "bool";
     case Type::text:
       return "str";
+    case Type::texts:
+      if (key.table == nullptr) return "Sequence[str]";
+      return fmt::format("Sequence[Union[str, \"{}\"]]", class_name(key.table()));
     case Type::path:
       return "Path";
     case Type::word:

@@ -72,6 +72,8 @@ std::string described(const Key& key) {
     case Type::text:
     case Type::path:
       return "a text in quotes";
+    case Type::texts:
+      return "a list of texts in quotes";
     case Type::word:
       return fmt::format("one of {}", name_list(key.choices));
     case Type::vector:

@@ -63,7 +63,7 @@ void Simulation::set_positions(ConstVectors positions) {
   changed.positions.assign(positions.begin(), positions.end());
   impl.keep_prescribed(now, changed.positions);
   if (impl.model->contact && !impl.options.allow_tangled)
-    refuse_crossings(*impl.model->contact, changed.positions);
+    refuse_crossings(*impl.model->contact, changed.positions, changed.time);
   impl.put(std::move(changed));
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/contact/contact_model.hpp"
 #include "muslin/contact/crossings.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/simulation/fingerprint.hpp"
@@ -40,9 +41,13 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   RunState state = from_checkpoint(bytes, model.vertex_count());
   // Which triangles cross depends on the surfaces and the option, which may have changed.
   state.contact.tangled.clear();
+  // Surfaces that crossed when a rule let them touch again are free until they part.
+  const bool leave_free =
+      impl.tangled_start() != TangledStart::refuse ||
+      (model.contact && !model.contact->surface->rules().empty());
   if (model.contact) {
-    if (impl.tangled_start() == TangledStart::refuse)
-      refuse_crossings(*model.contact, state.motion.positions, {model.scene.file.string()});
+    if (!leave_free)
+      refuse_crossings(*model.contact, state.motion.positions, state.motion.time, {model.scene.file.string()});
     require_fit(state.contact, *model.contact);
   } else {
     state.contact = {};
@@ -54,7 +59,7 @@ void Simulation::restore(const std::vector<std::uint8_t>& bytes) {
   impl.scratch.forget();
   impl.state = std::move(state);
   impl.wall_ms = 0;
-  if (model.contact && impl.tangled_start() != TangledStart::refuse)
+  if (model.contact && leave_free)
     impl.scratch.guard(model, impl.state)->allow_initial_intersections(impl.state.motion.positions);
 }
 

@@ -77,7 +77,7 @@ void Simulation::Impl::begin_contact(const Progress& progress) {
   const std::vector<Vec3>& x = state.motion.positions;
   if (options.resumes) return touch(true);
   if (tangled_start() == TangledStart::refuse)
-    refuse_crossings(*model->contact, x, {model->scene.file.string()});
+    refuse_crossings(*model->contact, x, state.motion.time, {model->scene.file.string()});
   if (tangled_start() == TangledStart::repair)
     untangled = untangle(*model, terms(), state, scratch, progress);
   touch(tangled_start() == TangledStart::ignore || untangled.left > 0);
@@ -89,6 +89,7 @@ void Simulation::Impl::touch(bool leave_free) {
   state.contact = {};
   ContactGuard& guard = *scratch.guard(*model, state);
   const std::vector<Vec3>& x = state.motion.positions;
+  guard.follow_rules(x, state.motion.time);
   if (leave_free) guard.allow_initial_intersections(x);
   guard.begin(x, scratch.fixed);
   guard.potential(x, StepGuard::Friction::anew);

@@ -63,11 +63,11 @@ bool share_a_corner(const ContactSurface& surface, ConstVectors points, const Cr
 }
 
 /// Refuses crossings at x, except those of triangles that a cut has just separated.
-void refuse_other_crossings(const ContactModel& contact, ConstVectors x) {
+void refuse_other_crossings(const ContactModel& contact, ConstVectors x, double time) {
   std::vector<Vec3> points(contact.surface->point_count());
   contact.map->apply(x, points);
-  for (const Crossing& crossing : find_crossings(contact, x))
-    if (!share_a_corner(*contact.surface, points, crossing)) refuse_crossings(contact, x);
+  for (const Crossing& crossing : find_crossings(contact, x, time))
+    if (!share_a_corner(*contact.surface, points, crossing)) refuse_crossings(contact, x, time);
 }
 
 /// Opens edges of a mesh of the scene, which becomes a mesh in memory that only this body uses, because other
@@ -98,7 +98,7 @@ void Simulation::change_model(std::shared_ptr<const Model> model, std::span<cons
     *values = gathered(*values, origins);
   motion.history = {};
   if (model->contact && !impl.options.allow_tangled)
-    refuse_other_crossings(*model->contact, motion.positions);
+    refuse_other_crossings(*model->contact, motion.positions, motion.time);
   const double before = energy();
 
   impl.state.holds = gathered(impl.state.holds, *impl.model, *model, origins);

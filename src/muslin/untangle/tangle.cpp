@@ -41,6 +41,7 @@ class TangleFinder::Search {
         candidates_(finder.candidates_),
         layerings_(finder.layerings_),
         sided_(finder.sided_),
+        rules_(surface_.rules().in_force(0)),
         dt_(dt),
         x_(surface_.point_count()) {
     model_.map->apply(q, x_);
@@ -66,12 +67,8 @@ class TangleFinder::Search {
 
  private:
   void find_crossing() {
-    const auto body_of = [&](int t) { return surface_.body_of(surface_.triangles()[at(t)][0]); };
     IntersectionOptions options;
-    options.wanted = [&](int a, int b) {
-      return surface_.may_touch(body_of(a), body_of(b)) &&
-             !model_.exempt.has(surface_.triangles()[at(a)], a, surface_.triangles()[at(b)], b);
-    };
+    options.wanted = [&](int a, int b) { return model_.forbids_crossing(a, b, rules_); };
     for (const Intersection& i : find_intersections(x_, surface_.triangles(), options))
       tangle_.crossing.push_back({i.first, i.second});
   }
@@ -129,11 +126,12 @@ class TangleFinder::Search {
 
   void add_lost(std::span<const LostPoint> all) {
     for (const LostPoint& lost : all) {
+      const Vec3i& t = surface_.triangles()[at(lost.triangle)];
       if (tangle_.free.free_of[at(lost.point)] >= 0) continue;
+      if (surface_.rules().parts({&lost.point, 1}, {t.data(), 3}, rules_)) continue;
       tangle_.free.free_of[at(lost.point)] = lost.piece;
       tangle_.wrong.push_back(lost);
       tangle_.depth = std::max(tangle_.depth, lost.depth);
-      const Vec3i& t = surface_.triangles()[at(lost.triangle)];
       const double edge = (x_[at(t[1])] - x_[at(t[0])]).norm();
       Separation s;
       s.normal = lost.out;
@@ -231,6 +229,7 @@ class TangleFinder::Search {
   /// on the right side.
   void add_close() {
     candidates_.ignore_pairs(tangle_.crossing, model_.exempt);
+    candidates_.apply_rules(rules_);
     candidates_.update(x_, x_, 0);
     for (const ContactPair& pair : candidates_.pairs()) {
       const int a = pieces_.of_point(pair.points[0]),
@@ -371,6 +370,7 @@ class TangleFinder::Search {
   ContactCandidates& candidates_;
   Layerings& layerings_;
   std::set<std::pair<int, int>>& sided_;
+  ContactRules::Set rules_;  // at the start
   double dt_;
   std::vector<Vec3> x_;
   struct Votes {
