@@ -1,6 +1,8 @@
 #include "muslin/io/mesh_file.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -233,6 +235,38 @@ TEST(Ply, ChecksEveryCount) {
     refused(head + "element face 1\nproperty list uint int vertex_indices\nend_header\n\xff\xff\xff\xff",
             ".ply");
   }
+}
+
+TEST(Ply, ReadsStripsOfTriangles) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 0 0\n2 1 0\n"
+      "9 0 1 2 3 -1 1 4 3 5\n";
+  const Mesh mesh = read(text, ".ply").mesh;
+  EXPECT_THAT(mesh.face_offsets, ElementsAre(0, 3, 6, 9, 12));
+  EXPECT_THAT(mesh.face_vertices, ElementsAre(0, 1, 2, 2, 1, 3, 1, 4, 3, 3, 4, 5));
+}
+
+TEST(Stl, ReadsTheDialectsOfPrograms) {
+  const std::string plain = fixtures::stl_ascii();
+  const Mesh wanted = read(plain, ".stl").mesh;
+  const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+    return text;
+  };
+  std::string capitals = plain;
+  std::transform(capitals.begin(), capitals.end(), capitals.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::string split = plain;
+  for (const char* word : {"solid", "loop", "facet"})
+    split = replaced(split, "end" + std::string(word), "end " + std::string(word));
+  std::string unity = plain;
+  unity.replace(0, plain.find('\n'), "Solid Unity Mesh");
+  const std::string windows = replaced(plain, "\n", "\r\n");
+  for (const std::string& text : {capitals, split, unity, windows})
+    EXPECT_EQ(read(text, ".stl").mesh.positions, wanted.positions) << text;
 }
 
 TEST(Stl, WeldsByExactPosition) {

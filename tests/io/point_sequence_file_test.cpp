@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cache/scratch.hpp"
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "muslin/cache/point_cache.hpp"
@@ -79,6 +80,22 @@ TEST(PointSequence, NumberedFilesBeginAtTheSmallest) {
   EXPECT_THROW(read_point_sequence(scratch / "walk.###.obj", 24), Error);
   EXPECT_THROW(read_point_sequence(scratch / "run.###.obj", 24), Error);
   EXPECT_THROW(read_point_sequence(scratch / "walk.98.obj", 24), Error);
+}
+
+TEST(PointSequence, NamesAMissingFrame) {
+  Scratch scratch;
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const int frame : {2, 4, 8, 10}) write_bytes(scratch / fmt::format("walk.{:04}.obj", frame), obj);
+  try {
+    read_point_sequence(scratch / "walk.####.obj", 24);
+    FAIL() << "read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("frame 6 of the sequence is missing: walk.0004.obj is followed "
+                                   "by walk.0008.obj"));
+  }
+  write_bytes(scratch / "walk.0006.obj", obj);
+  EXPECT_EQ(read_point_sequence(scratch / "walk.####.obj", 24).times.size(), 5U);
 }
 
 TEST(PointSequence, RefusesDamagedCaches) {

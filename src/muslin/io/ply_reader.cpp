@@ -56,6 +56,8 @@ Role role_of(std::string_view element, std::string_view name, bool list) {
     if (name == "s" || name == "u" || name == "texture_u") return Role::u;
     if (name == "t" || name == "v" || name == "texture_v") return Role::v;
   }
+  if (element == "tristrips" && list && (name == "vertex_indices" || name == "vertex_index"))
+    return Role::corners;
   if (element == "face" && list) {
     if (name == "vertex_indices" || name == "vertex_index") return Role::corners;
     if (name == "texcoord") return Role::corner_uvs;
@@ -227,7 +229,26 @@ class PlyReader {
       if (has_uvs(element)) vertex_uvs_.push_back(checked(uv, "vertex"));
     } else if (element.name == "face") {
       face();
+    } else if (element.name == "tristrips") {
+      strips();
     }
+  }
+
+  /// Strips of triangles one after the other, with −1 between them: every corner after the second makes a
+  /// triangle with the two before it, and every second triangle is turned.
+  void strips() {
+    const std::vector<double> strip = std::move(corners_);
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < strip.size(); ++i) {
+      if (strip[i] == -1) begin = i + 1;
+      if (strip[i] == -1 || i < begin + 2) continue;
+      const double a = strip[i - 2], b = strip[i - 1], c = strip[i];
+      if (a == b || b == c || c == a) continue;  // joins two strips
+      const bool turned = (i - begin) % 2 != 0;
+      corners_ = {turned ? b : a, turned ? a : b, c};
+      face();
+    }
+    corners_.clear();
   }
 
   static bool has_uvs(const Element& element) {

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -112,11 +114,26 @@ std::map<std::uint64_t, fs::path> numbered_files(const fs::path& pattern) {
   return files;
 }
 
+/// Every second or tenth frame is a sequence too, but all steps are equal.
+void require_no_gap(const std::map<std::uint64_t, fs::path>& files, const fs::path& pattern) {
+  std::uint64_t stride = std::numeric_limits<std::uint64_t>::max();
+  for (auto at = files.begin(), next = std::next(at); next != files.end(); at = next++)
+    stride = std::min(stride, next->first - at->first);
+  for (auto at = files.begin(), next = std::next(at); next != files.end(); at = next++) {
+    if (next->first - at->first == stride) continue;
+    refuse(pattern.string(),
+           fmt::format("frame {} of the sequence is missing: {} is followed by {}", at->first + stride,
+                       at->second.filename().string(), next->second.filename().string()),
+           "export the missing frames");
+  }
+}
+
 PointSequence read_numbered(const fs::path& pattern, double frame_rate) {
   const std::map<std::uint64_t, fs::path> files = numbered_files(pattern);
   if (files.empty())
     throw Error(ErrorKind::file, Place{pattern.string()}, "no file matches this pattern",
                 "the # stand for the number, as in walk.0001.obj");
+  require_no_gap(files, pattern);
   PointSequence sequence;
   for (const auto& [number, path] : files) {
     const Mesh mesh = read_mesh(path).mesh;

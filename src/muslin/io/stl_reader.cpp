@@ -1,7 +1,10 @@
 #include "muslin/io/stl_reader.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <string>
 
 #include "muslin/geometry/inspect.hpp"
 #include "muslin/io/binary_reader.hpp"
@@ -42,6 +45,14 @@ MeshFile read_binary(std::string_view bytes, std::size_t triangles, const std::s
   return {std::move(mesh), std::move(note)};
 }
 
+std::string lowered(std::string_view word) {
+  std::string text(word);
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Programs write keywords in any case, and the closing ones in one word or two.
 class AsciiStl {
  public:
   AsciiStl(std::string_view text, const std::string& file)
@@ -51,7 +62,7 @@ class AsciiStl {
     expect("solid");
     do {
       solid();
-    } while (scanner_.next_word() == "solid");
+    } while (keyword() == "solid");
     if (mesh_.groups.size() == 1) {
       mesh_.name = mesh_.groups[0].name;
       mesh_.groups.clear();
@@ -65,18 +76,25 @@ class AsciiStl {
   }
 
  private:
-  void expect(std::string_view keyword) { check(scanner_.next_word(), keyword); }
+  /// Reads the next keyword, in lower case; the two words "end solid" are one.
+  std::string keyword() {
+    word_ = scanner_.next_word();
+    const std::string word = lowered(word_);
+    return word == "end" ? word + lowered(scanner_.next_word()) : word;
+  }
 
-  void check(std::string_view word, std::string_view keyword) const {
-    if (word != keyword)
-      scanner_.fail(word, "expected '" + std::string(keyword) + "' of an ASCII STL file",
-                    word.empty() ? "the file is cut off: export it again"
-                                 : "the file is damaged or of another format: export it again");
+  void expect(std::string_view wanted) { check(keyword(), wanted); }
+
+  void check(const std::string& found, std::string_view wanted) const {
+    if (found != wanted)
+      scanner_.fail(word_, "expected '" + std::string(wanted) + "' of an ASCII STL file",
+                    word_.empty() ? "the file is cut off: export it again"
+                                  : "the file is damaged or of another format: export it again");
   }
 
   void solid() {
     mesh_.groups.push_back({std::string(scanner_.rest_of_line()), {}, {}});
-    for (std::string_view word = scanner_.next_word(); word != "endsolid"; word = scanner_.next_word()) {
+    for (std::string word = keyword(); word != "endsolid"; word = keyword()) {
       check(word, "facet");
       facet();
     }
@@ -89,21 +107,21 @@ class AsciiStl {
     expect("outer");
     expect("loop");
     std::vector<int> face;
-    std::string_view word = scanner_.next_word();
-    for (; word != "endloop"; word = scanner_.next_word()) {
+    for (std::string word = keyword(); word != "endloop"; word = keyword()) {
       check(word, "vertex");
       Vec3 position;
       for (int axis = 0; axis < 3; ++axis) position[axis] = scanner_.coordinate(scanner_.next_word());
       face.push_back(welder_.vertex(position));
     }
     if (face.size() < 3)
-      scanner_.fail(word, "a facet has fewer than three vertices", "the file is damaged: export it again");
+      scanner_.fail(word_, "a facet has fewer than three vertices", "the file is damaged: export it again");
     expect("endfacet");
     mesh_.groups.back().faces.push_back(static_cast<int>(mesh_.face_count()));
     mesh_.add_face(face);
   }
 
   TextScanner scanner_;
+  std::string_view word_;  ///< the last one that was read as a keyword
   Mesh mesh_;
   Welder welder_;
 };
@@ -117,7 +135,7 @@ MeshFile read_stl(std::string_view bytes, const std::string& file) {
   const std::size_t size = header_size + triangles * triangle_size;
   if (has_count && bytes.size() == size) return read_binary(bytes, triangles, file);
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-  if (first != bytes.npos && bytes.substr(first).starts_with("solid")) return AsciiStl(bytes, file).read();
+  if (first != bytes.npos && lowered(bytes.substr(first, 5)) == "solid") return AsciiStl(bytes, file).read();
   if (has_count && bytes.size() > size && triangles > 0) return read_binary(bytes, triangles, file);
   throw Error(ErrorKind::input, Place{file},
               has_count ? "the file should hold " + std::to_string(triangles) + " triangles in " +
