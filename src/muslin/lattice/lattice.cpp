@@ -162,12 +162,13 @@ class Builder {
     });
   }
 
-  void sample_fills(std::vector<Candidate>& candidates) const {
-    for_batches(candidates.size(), 64, 0.7, 0.9, [&](std::size_t begin, std::size_t end) {
+  void sample_fills(ConstVectors positions, std::span<const Vec3i> triangles,
+                    std::vector<Candidate>& candidates) const {
+    const FillSampler fill(positions, triangles, grid_);
+    for_batches(candidates.size(), 16, 0.7, 0.9, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c) {
         Candidate& candidate = candidates[c];
-        if (candidate.kept)
-          candidate.fill = sampled_fill(distance_, grid_.centre(candidate.voxel), grid_.width);
+        if (candidate.kept) candidate.fill = fill(candidate.voxel);
       }
     });
   }
@@ -347,7 +348,8 @@ Lattice build_lattice(const Mesh& mesh, const SignedDistance& distance, const La
 
   const Builder builder(distance, grid, settings, progress);
   builder.decide(candidates);
-  if (!oriented.watertight || !is_simple(candidates)) builder.sample_fills(candidates);
+  if (!oriented.watertight || !is_simple(candidates))
+    builder.sample_fills(mesh.positions, triangulation.triangles, candidates);
 
   Lattice lattice;
   lattice.origin = grid.origin;
