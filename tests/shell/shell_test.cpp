@@ -72,6 +72,24 @@ TEST(Shell, FacePerpendicularToTheWarpGetsAnotherDirection) {
   EXPECT_TRUE(shell.inverses[0].allFinite());
 }
 
+TEST(Shell, ThreadsOfUntexturedPolygonsContinueThoseOfTheirNeighbours) {
+  // A rolled sheet whose texture turns the warp by half a radian; then half of it loses the texture.
+  Mesh mesh = test::flat_sheet(6, 3, 1, 0.5);
+  const double c = std::cos(0.5), s = std::sin(0.5);
+  for (const Vec3& x : mesh.positions) mesh.uvs.emplace_back(c * x.x() + s * x.z(), c * x.z() - s * x.x());
+  mesh.corner_uvs = mesh.face_vertices;
+  const std::vector<Vec3> rest = test::rolled(mesh.positions, 2);
+  const Shell whole = build_shell(mesh, rest, {});
+  Mesh half = mesh;
+  for (std::size_t corner = half.corner_uvs.size() / 2; corner < half.corner_uvs.size(); ++corner)
+    half.corner_uvs[corner] = -1;
+  half.corner_uvs[0] = -1;
+  const Shell carried = build_shell(half, rest, {});
+  ASSERT_EQ(carried.inverses.size(), whole.inverses.size());
+  for (std::size_t t = 0; t < whole.inverses.size(); ++t)
+    EXPECT_LT((carried.inverses[t] - whole.inverses[t]).norm(), 1e-6 * whole.inverses[t].norm()) << t;
+}
+
 TEST(Shell, RestShapeMayDiffer) {
   const Mesh mesh = test::flat_sheet(4, 4, 1, 1);
   const std::vector<Vec3> rest = test::rolled(mesh.positions, 2);
@@ -108,11 +126,11 @@ TEST(Shell, ErrorsDescribeTheDefect) {
   EXPECT_THAT(problem(loose), HasSubstr("vertex 5 belongs to no polygon"));
 
   const Mesh bare = test::flat_sheet(1, 1, 1, 1);
-  EXPECT_THAT(problem(bare, {}), HasSubstr("polygon 1 has no texture coordinates"));
+  EXPECT_THAT(problem(bare, {}), HasSubstr("no polygon has texture coordinates"));
   Mesh pinched = bare;
   pinched.uvs.assign(4, Vec2(0.5, 0.5));
   pinched.corner_uvs = pinched.face_vertices;
-  EXPECT_THAT(problem(pinched, {}), HasSubstr("no area in the texture"));
+  EXPECT_THAT(problem(pinched, {}), HasSubstr("no polygon has texture coordinates with an area"));
 }
 
 TEST(Shell, StretchIsTheLargestInAnyDirection) {

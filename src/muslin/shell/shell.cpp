@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -30,6 +33,7 @@ class ShellBuilder {
     shell_.triangles = std::move(cut.triangles);
     shell_.faces = std::move(cut.faces);
     shell_.vertex_areas.assign(mesh_.vertex_count(), 0.0);
+    find_warps();
     for (std::size_t t = 0; t < shell_.triangles.size(); ++t) add_triangle(t);
     for (std::size_t v = 0; v < shell_.vertex_areas.size(); ++v) {
       if (shell_.vertex_areas[v] > 0) continue;
@@ -44,7 +48,76 @@ class ShellBuilder {
  private:
   const Vec3& rest(int v) const { return rest_[static_cast<std::size_t>(v)]; }
 
-  void add_triangle(std::size_t t) {
+  void find_warps() {
+    std::vector<std::uint8_t> known(shell_.triangles.size(), 0);
+    std::vector<std::size_t> reached;
+    warps_.resize(shell_.triangles.size());
+    for (std::size_t t = 0; t < shell_.triangles.size(); ++t) {
+      require_area(t);
+      const std::optional<Vec3> warp = warp_of(t);
+      if (!warp) continue;
+      warps_[t] = *warp;
+      known[t] = 1;
+      reached.push_back(t);
+    }
+    if (reached.size() == shell_.triangles.size()) return;
+    if (reached.empty())
+      throw Error(ErrorKind::input,
+                  "no polygon has texture coordinates with an area, so the threads have no direction",
+                  "unwrap the mesh, or give `warp` a direction");
+    continue_warps(known, std::move(reached));
+  }
+
+  /// Threads of triangles without a texture continue those of their neighbours, the nearest first; those of a
+  /// piece without any run along the longest side of the whole.
+  void continue_warps(std::vector<std::uint8_t>& known, std::vector<std::size_t> reached) {
+    std::vector<std::vector<std::pair<EdgeUse, EdgeUse>>> sides(shell_.triangles.size());
+    for_each_edge(triangle_sides(shell_.triangles), [&](std::span<const EdgeUse> edge) {
+      for (const EdgeUse& from : edge)
+        for (const EdgeUse& to : edge)
+          if (from.face != to.face) sides[static_cast<std::size_t>(from.face)].emplace_back(from, to);
+    });
+    std::size_t i = 0;
+    const auto spread = [&] {
+      for (; i < reached.size(); ++i) {
+        for (const auto& [from, to] : sides[reached[i]]) {
+          const auto next = static_cast<std::size_t>(to.face);
+          if (known[next] != 0) continue;
+          known[next] = 1;
+          warps_[next] = unfolded(from, to);
+          reached.push_back(next);
+        }
+      }
+    };
+    spread();
+    Box bounds;
+    for (const Vec3& x : rest_) bounds.extend(x);
+    int axis;
+    bounds.sizes().maxCoeff(&axis);
+    for (std::size_t t = 0; t < known.size(); ++t) {
+      if (known[t] != 0) continue;
+      known[t] = 1;
+      warps_[t] = in_plane(Vec3::Unit(axis), normal_of(static_cast<int>(t)));
+      reached.push_back(t);
+      spread();
+    }
+  }
+
+  /// Returns the warp of one triangle in another, unfolded about their edge into one plane.
+  Vec3 unfolded(const EdgeUse& from, const EdgeUse& to) const {
+    const Vec3 along = (rest(from.high) - rest(from.low)).normalized();
+    const Vec3& warp = warps_[static_cast<std::size_t>(from.face)];
+    const double side = from.ascends == to.ascends ? -1 : 1;  // −1: it faces the other way
+    return warp.dot(along) * along +
+           side * warp.dot(normal_of(from.face).cross(along)) * normal_of(to.face).cross(along);
+  }
+
+  Vec3 normal_of(int triangle) const {
+    const Vec3i& v = shell_.triangles[static_cast<std::size_t>(triangle)];
+    return (rest(v[1]) - rest(v[0])).cross(rest(v[2]) - rest(v[0])).normalized();
+  }
+
+  void require_area(std::size_t t) const {
     const Vec3i& v = shell_.triangles[t];
     const Vec3 e1 = rest(v[1]) - rest(v[0]), e2 = rest(v[2]) - rest(v[0]);
     const Vec3 twice = e1.cross(e2);
@@ -55,8 +128,14 @@ class ShellBuilder {
                               shell_.faces[t] + 1, v[0] + 1, v[1] + 1, v[2] + 1),
                   "merge or dissolve degenerate polygons in the modeller");
     }
+  }
+
+  void add_triangle(std::size_t t) {
+    const Vec3i& v = shell_.triangles[t];
+    const Vec3 e1 = rest(v[1]) - rest(v[0]), e2 = rest(v[2]) - rest(v[0]);
+    const Vec3 twice = e1.cross(e2);
     const Vec3 normal = twice.normalized();
-    const Vec3 warp = warp_of(t, e1, e2, normal);
+    const Vec3& warp = warps_[t];
     const Vec3 weft = normal.cross(warp);
     Mat2 edges;
     edges << warp.dot(e1), warp.dot(e2), weft.dot(e1), weft.dot(e2);
@@ -64,40 +143,46 @@ class ShellBuilder {
     shell_.inverses.push_back(edges.inverse());
     shell_.areas.push_back(area);
     shell_.area += area;
-    warps_.push_back(warp);
     for (int c = 0; c < 3; ++c) shell_.vertex_areas[static_cast<std::size_t>(v[c])] += area / 3;
   }
 
-  Vec3 warp_of(std::size_t t, const Vec3& e1, const Vec3& e2, const Vec3& normal) {
+  /// None: the triangle has no texture.
+  std::optional<Vec3> warp_of(std::size_t t) {
+    const Vec3i& v = shell_.triangles[t];
+    const Vec3 e1 = rest(v[1]) - rest(v[0]), e2 = rest(v[2]) - rest(v[0]);
+    const Vec3 normal = e1.cross(e2).normalized();
     if (!weave_.warp) return warp_from_texture(t, e1, e2, normal);
-    Vec3 warp = *weave_.warp - weave_.warp->dot(normal) * normal;
-    if (warp.norm() < shortest_projection * weave_.warp->norm()) {
-      ++shell_.odd_faces;
-      int axis;
-      normal.cwiseAbs().minCoeff(&axis);
-      warp = Vec3::Unit(axis) - normal[axis] * normal;
-    }
-    return warp.normalized();
+    if (is_across(*weave_.warp, normal)) ++shell_.odd_faces;
+    return in_plane(*weave_.warp, normal);
+  }
+
+  static Vec3 projected(const Vec3& v, const Vec3& normal) { return v - v.dot(normal) * normal; }
+  static bool is_across(const Vec3& v, const Vec3& normal) {
+    return projected(v, normal).norm() < shortest_projection * v.norm();
+  }
+  /// Returns the direction of v in the plane; that of another axis if v stands across it.
+  static Vec3 in_plane(const Vec3& v, const Vec3& normal) {
+    if (!is_across(v, normal)) return projected(v, normal).normalized();
+    int axis;
+    normal.cwiseAbs().minCoeff(&axis);
+    return (Vec3::Unit(axis) - normal[axis] * normal).normalized();
   }
 
   /// Returns the direction of steepest u in the triangle: with the texture's edges U (columns) and those of
   /// the triangle E, ∂x/∂u = E U⁻¹ (1, 0).
-  Vec3 warp_from_texture(std::size_t t, const Vec3& e1, const Vec3& e2, const Vec3& normal) const {
-    const auto uv = uvs_of(t);
-    const Vec2 u1 = uv[1] - uv[0], u2 = uv[2] - uv[0];
+  std::optional<Vec3> warp_from_texture(std::size_t t, const Vec3& e1, const Vec3& e2,
+                                        const Vec3& normal) const {
+    const std::optional<std::array<Vec2, 3>> uv = uvs_of(t);
+    if (!uv) return std::nullopt;
+    const Vec2 u1 = (*uv)[1] - (*uv)[0], u2 = (*uv)[2] - (*uv)[0];
     const double area = u1.x() * u2.y() - u1.y() * u2.x();
     const double longest = std::max(u1.squaredNorm(), u2.squaredNorm());
-    if (!(std::abs(area) > flattest * longest)) {
-      throw Error(ErrorKind::input,
-                  fmt::format("polygon {} has no area in the texture, so its threads have no direction",
-                              shell_.faces[t] + 1),
-                  "unwrap it, or give `warp` a direction");
-    }
+    if (!(std::abs(area) > flattest * longest)) return std::nullopt;
     const Vec3 along = (e1 * u2.y() - e2 * u1.y()) / area;
     return (along - along.dot(normal) * normal).normalized();
   }
 
-  std::array<Vec2, 3> uvs_of(std::size_t t) const {
+  std::optional<std::array<Vec2, 3>> uvs_of(std::size_t t) const {
     const auto f = static_cast<std::size_t>(shell_.faces[t]);
     const auto face = mesh_.face(f);
     std::array<Vec2, 3> uv;
@@ -105,10 +190,7 @@ class ShellBuilder {
       const auto at = std::find(face.begin(), face.end(), shell_.triangles[t][c]) - face.begin();
       const auto corner = static_cast<std::size_t>(mesh_.face_offsets[f] + at);
       const int index = corner < mesh_.corner_uvs.size() ? mesh_.corner_uvs[corner] : -1;
-      if (index < 0) {
-        throw Error(ErrorKind::input, fmt::format("polygon {} has no texture coordinates", f + 1),
-                    "unwrap the mesh, or give `warp` a direction");
-      }
+      if (index < 0) return std::nullopt;
       uv[static_cast<std::size_t>(c)] = mesh_.uvs[static_cast<std::size_t>(index)];
     }
     return uv;
