@@ -8,6 +8,8 @@
 #include <assimp/scene.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/io/isolated.hpp"
+#include "muslin/io/mesh_bytes.hpp"
 #include "muslin/io/node_mesh.hpp"
 
 namespace muslin {
@@ -147,8 +149,15 @@ class AssimpReader {
 
 }  // namespace
 
+/// Damaged files crash the library, or keep it busy without end.
 MeshFile read_with_assimp(std::string_view bytes, const std::string& suffix, const std::string& file) {
-  return AssimpReader(suffix, file).read(bytes);
+  try {
+    return from_bytes(run_isolated([&] { return to_bytes(AssimpReader(suffix, file).read(bytes)); }));
+  } catch (const IsolatedFailure& failure) {
+    throw Error(ErrorKind::input, Place{file},
+                std::string("the library that reads this format cannot read the file: ") + failure.what(),
+                "it is damaged, or very large: export it again, preferably as OBJ");
+  }
 }
 
 }  // namespace muslin
