@@ -115,10 +115,16 @@ void ContactGuard::follow_rules(ConstVectors q, double time) {
   if (now == memory_.rules && rules.hash() == memory_.rules_hash) return;
   memory_.rules = now;
   memory_.rules_hash = rules.hash();
+  candidates_.apply_rules(now);
+  free_crossings(q);
+}
+
+void ContactGuard::free_crossings(ConstVectors q) {
   memory_.tangled = crossing(q);
   candidates_.ignore_pairs(memory_.tangled, model_->exempt);
-  candidates_.apply_rules(now);
-  rebuild();
+  memory_.begin.clear();
+  memory_.end.clear();
+  renewed_ = false;
 }
 
 void ContactGuard::begin(ConstVectors q, std::span<const std::uint8_t> held) {

@@ -50,6 +50,10 @@ class ContactGuard : public StepGuard {
   /// contact begins are free until they part.
   void follow_rules(ConstVectors q, double time);
 
+  /// Excludes contact between the features of triangles that cross at q, as below, after vertices were moved
+  /// without a limit.
+  void free_crossings(ConstVectors q);
+
   /// Excludes contact between the features of triangles that cross at q, until these triangles part. While
   /// some pairs cross, neighbouring triangles may begin to cross; once no pair crosses, none can cross again.
   void allow_initial_intersections(ConstVectors q);

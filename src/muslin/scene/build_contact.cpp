@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -191,11 +192,43 @@ void warn_of_pressed_start(Model& model) {
       closest->second.range));
 }
 
+/// Warns of colliders that jump, by their motion from frame to frame.
+void warn_of_jumps(Model& model) {
+  for (const Component& component : model.bodies) {
+    const Prescribed* motion = component.is_prescribed() ? component.motion() : nullptr;
+    if (motion == nullptr || !motion->moves()) continue;
+    const double frame = 1 / model.scene.time.frame_rate;
+    std::vector<Vec3> x(motion->start.size());
+    const auto middle = [&](double time) {
+      motion->positions(time, x);
+      return Vec3(std::accumulate(x.begin(), x.end(), Vec3(Vec3::Zero())) / static_cast<double>(x.size()));
+    };
+    double fastest = 0, when = 0;
+    Vec3 last = middle(0);
+    for (int f = 1; f <= model.scene.time.frames(); ++f) {
+      const Vec3 now = middle(f * frame);
+      if (const double speed = (now - last).norm() / frame; speed > fastest) {
+        fastest = speed;
+        when = (f - 1) * frame;
+      }
+      last = now;
+    }
+    if (fastest > jump_speed)
+      model.warnings.push_back(
+          fmt::format("\"{}\" moves at {:.3g} m/s at {:.3g} s; where it is faster than {:.3g} m/s relative "
+                      "to all bodies it "
+                      "passes through what is in its way",
+                      component.name, fastest, when, jump_speed));
+  }
+}
+
 }  // namespace
 
 void build_contact(Model& model) {
   ContactBuilder(model).build();
-  if (model.contact) warn_of_pressed_start(model);
+  if (!model.contact) return;
+  warn_of_pressed_start(model);
+  warn_of_jumps(model);
 }
 
 }  // namespace muslin

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+
+#include "muslin/simulation/jumping_colliders.hpp"
 
 namespace muslin {
 namespace {
@@ -27,8 +30,16 @@ class Advance {
       : model_(model), terms_(terms), state_(state), scratch_(scratch), guard_(scratch.guard(model, state)) {}
 
   StepReport by(double length, int halvings = 0) {
-    const State before = state_.motion;
     const ContactMemory contact = state_.contact;
+    std::optional<State> standing;  // before colliders jump
+    double jumped = 0;              // energy of contact that their jump makes [J]
+    if (const auto jumping = guard_ != nullptr ? jumping_colliders(model_, state_.motion, length)
+                                               : std::vector<const Prescribed*>();
+        !jumping.empty()) {
+      standing = state_.motion;
+      jumped = jump(jumping, length);
+    }
+    const State before = state_.motion;
     StepContext context = step_context(model_.scene.solver.integrator, before, length);
     const SolverSettings settings = model_.scene.solver.at(context.time_end);
     const auto loads = terms_.potentials_of_loads(context);
@@ -57,7 +68,7 @@ class Advance {
     StepReport report = scratch_.stepper.step(settings, context, problem, state_.motion);
     const bool missed = report.made() && !report.converged && halvings < patience() &&
                         settings.integrator != Integrator::linearly_implicit_euler;
-    if (missed) take_back(before, contact);
+    if (missed || (standing && !report.made())) take_back(standing ? *standing : before, contact);
     count(report, report.made() && !missed);
     if (!report.made() || missed) {
       if (halvings == max_halvings) return report;
@@ -65,6 +76,8 @@ class Advance {
       return report.made() ? by(length / 2, halvings + 1) : report;
     }
     state_.holds = std::move(next);
+    state_.energy.work += jumped;
+    state_.energy.contact_energy += jumped;
     SolvedStep solved;
     solved.integrator = settings.integrator;
     solved.length = length;
@@ -86,6 +99,19 @@ class Advance {
 
  private:
   int patience() const { return state_.counts.converged_steps < state_.counts.steps ? 0 : patient_halvings; }
+
+  /// Puts colliders where they are at the end of a step, free of what they then cross. Returns the energy
+  /// that contact gains [J].
+  double jump(const std::vector<const Prescribed*>& jumping, double length) {
+    std::vector<Vec3>& x = state_.motion.positions;
+    for (const Prescribed* motion : jumping)
+      motion->positions(state_.motion.time + length,
+                        Vectors(x).subspan(static_cast<std::size_t>(motion->first), motion->start.size()));
+    guard_->free_crossings(x);
+    guard_->begin(x, scratch_.fixed);
+    guard_->potential(x, StepGuard::Friction::anew);
+    return guard_->last_potential().parts(x).normal - state_.energy.contact_energy;
+  }
 
   /// Undoes a step that was made but is rejected.
   void take_back(const State& before, const ContactMemory& contact) {
