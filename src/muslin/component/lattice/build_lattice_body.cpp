@@ -56,8 +56,11 @@ class LatticeBuilder {
   void say(const std::string& sentence) { warn_of_body(inputs_, settings_.name, sentence); }
 
   void make_solid() {
+    using Inside = LatticeBodySettings::Inside;
     MeshKind kind = kind_of(body_.mesh, body_.report);
     if (kind == MeshKind::holed_solid && own_.thickness) kind = MeshKind::sheet;
+    if (own_.inside != Inside::automatic)
+      kind = own_.inside == Inside::filled ? MeshKind::solid : MeshKind::sheet;
     body_.sheet = kind == MeshKind::sheet;
     if (body_.sheet) {
       body_.thickness = own_.thickness.value_or(own_.lattice.width);
@@ -65,15 +68,15 @@ class LatticeBuilder {
       if (!own_.thickness) {
         say(
             fmt::format("the mesh is a sheet; its thickness is taken as one voxel width, {} m; set "
-                        "`thickness` to choose it",
+                        "`thickness` to choose it, or `inside = \"filled\"` for a solid",
                         body_.thickness));
       }
       return;
     }
-    if (own_.thickness) say("the mesh is closed, so `thickness` has no effect");
+    if (own_.thickness) say("the mesh is filled, so `thickness` has no effect");
     if (kind == MeshKind::holed_solid) {
       say(fmt::format(
-          "the mesh has {} open edges around small holes and is filled as a solid; set `thickness` "
+          "the mesh has {} open edges around small holes and is filled as a solid; set `inside = \"sheet\"` "
           "if it is meant as a shell",
           body_.report.open_edges));
     }

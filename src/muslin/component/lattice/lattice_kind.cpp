@@ -119,7 +119,12 @@ Material read_table(const TomlTable& table, const BodySettings& body, const std:
 const schema::Table& keys() {
   static const schema::Table table = kind_table<Own>(
       "lattice",
-      {schema::number("thickness", &Own::thickness)
+      {schema::word("inside", &Own::inside, {"auto", "filled", "sheet"})
+           .means(
+               "`\"auto\"`: a mesh that is closed, or has small holes only, is a solid, any other a sheet · "
+               "`\"filled\"`: a solid, wherever the winding number of the mesh is above one half, however "
+               "large its holes · `\"sheet\"`: a sheet, though the mesh is closed"),
+       schema::number("thickness", &Own::thickness)
            .unit("m")
            .range({0, largest_coordinate, true})
            .otherwise("one voxel width")

@@ -21,7 +21,27 @@
 namespace muslin {
 namespace {
 
+constexpr double largest_cloth = 20, largest_plausible = 200;  // [m]
 constexpr double folding_size = 8;  // cloth of fewer edges has no folds
+
+/// Counts polygons that lack texture coordinates, or have no area in the texture.
+std::size_t faces_without_texture(const Mesh& mesh) {
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto begin = static_cast<std::size_t>(mesh.face_offsets[f]), end = begin + mesh.face(f).size();
+    bool missing = false;
+    double area = 0;
+    for (std::size_t c = begin; c < end && !missing; ++c) {
+      const int uv = mesh.corner_uvs[c], next = mesh.corner_uvs[c + 1 < end ? c + 1 : begin];
+      missing = uv < 0 || next < 0;
+      if (missing) break;
+      const Vec2 &a = mesh.uvs[static_cast<std::size_t>(uv)], &b = mesh.uvs[static_cast<std::size_t>(next)];
+      area += a.x() * b.y() - a.y() * b.x();
+    }
+    count += missing || area == 0 ? 1 : 0;
+  }
+  return count;
+}
 
 class ShellBuilder {
  public:
@@ -110,8 +130,14 @@ class ShellBuilder {
       // The direction refers to the mesh as modelled.
       weave.warp = placement(Vec3::Zero(), settings_.rotate, Vec3::Ones()) * *weave.warp;
     }
-    const bool textured = !body_.mesh.corner_uvs.empty() &&
-                          *std::min_element(body_.mesh.corner_uvs.begin(), body_.mesh.corner_uvs.end()) >= 0;
+    const std::vector<int>& uvs = body_.mesh.corner_uvs;
+    const bool textured = std::any_of(uvs.begin(), uvs.end(), [](int uv) { return uv >= 0; });
+    const std::size_t bare = textured ? faces_without_texture(body_.mesh) : 0;
+    if (!weave.warp && bare > 0)
+      say(
+          fmt::format("{} of {} polygons have no place in the texture; their threads continue those of their "
+                      "neighbours; unwrap them, or give `warp` a direction",
+                      bare, body_.mesh.face_count()));
     if (!weave.warp && !textured) {
       int axis;
       rest.bounds().sizes().maxCoeff(&axis);
@@ -138,6 +164,7 @@ class ShellBuilder {
     }
     warn_of_inverted_triangles(rest);
     warn_of_long_edges();
+    warn_of_units();
     body_.skin = identity_embedding(body_.mesh.vertex_count());
     body_.vertex_count = static_cast<int>(body_.mesh.vertex_count());
     BodyStatistics& s = body_.statistics;
@@ -213,6 +240,13 @@ class ShellBuilder {
         "more than {:.2g} m, because folds across edges strain the membrane; leave out `compression`, "
         "or refine the mesh",
         edge, body_.settings.material.name, trusted.unlocked));
+  }
+
+  /// Sizes beyond `largest_plausible` are mentioned with the mesh.
+  void warn_of_units() {
+    const double size = body_.mesh.bounds().sizes().maxCoeff();
+    if (size > largest_cloth && size <= largest_plausible)
+      say(fmt::format("it is {:.3g} m across; if its mesh is in centimetres, set `scale = 0.01`", size));
   }
 
   const BodySettings& settings_;
