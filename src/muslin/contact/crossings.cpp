@@ -150,8 +150,11 @@ std::string advice(const ContactModel& model, ConstVectors q, std::span<const Cr
         if (i != j && x[at(i)] == x[at(j)]) return true;
     return false;
   });
-  return unwelded ? "merge vertices of a mesh that lie at one place (Blender: Mesh > Merge > By Distance)"
-                  : "move them apart";
+  if (unwelded) return "merge vertices of a mesh that lie at one place (Blender: Mesh > Merge > By Distance)";
+  const bool alone = std::all_of(found.begin(), found.end(),
+                                 [](const Crossing& c) { return c.first_body == c.second_body; });
+  return alone ? "repair the mesh, or set `self_contact = false` if the body need not touch itself"
+               : "move them apart";
 }
 
 void refuse_crossings(const ContactModel& model, ConstVectors q, double time, const Place& place) {
