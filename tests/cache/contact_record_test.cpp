@@ -1,7 +1,9 @@
 // The object `contact` of run.json: it reads as it was written, and damage is an error that says what to do.
 #include "muslin/cache/contact_record.hpp"
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,6 +33,33 @@ TEST(ContactRecord, ReadsBodiesInTheirOrder) {
   EXPECT_EQ(record.bodies[1].radius, 0.1);
   EXPECT_TRUE(record.bodies[1].fixed);
   EXPECT_THAT(record.bodies[1].axis, testing::ElementsAre(Vec3(0, 1, 0), Vec3(0, 2, 0.5)));
+}
+
+TEST(ContactRecord, KeepsTheRulesOfPairs) {
+  ContactRule rule;
+  rule.sides[0] = {0, 1, 2, 4};
+  rule.sides[1] = {5};
+  rule.touches = false;
+  rule.thickness = 0.002;
+  rule.until = 0.5;
+  ContactModel model;
+  model.surface = std::make_shared<ContactSurface>(
+      std::vector<Vec3i>{{0, 1, 2}, {2, 3, 4}}, std::vector<int>{0, 0, 0, 0, 0, 1},
+      std::vector<ContactBody>(2), std::vector<ContactPlane>(), ContactRules({rule, ContactRule()}, 6));
+  model.rest.resize(6);
+  const Json written = contact_record_json(model);
+  EXPECT_EQ(written["rules"][0]["points"], Json::parse("[[[0, 2], [4, 4]], [[5, 5]]]"));
+  const ContactRecord record = read_contact_record(written);
+  ASSERT_EQ(record.rules.size(), 2U);
+  EXPECT_EQ(record.rules[0].sides, rule.sides);
+  EXPECT_FALSE(record.rules[0].touches);
+  EXPECT_EQ(record.rules[0].thickness, 0.002);
+  EXPECT_EQ(record.rules[0].until, 0.5);
+  EXPECT_FALSE(record.rules[1].thickness);
+  EXPECT_EQ(record.rules[1].until, ContactRule().until);
+  Json far = written;
+  far["rules"][0]["points"][1] = Json::parse("[[5, 1000000000]]");
+  EXPECT_THROW(read_contact_record(far), Error);
 }
 
 TEST(ContactRecord, RefusesDamage) {
