@@ -10,7 +10,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/law.hpp"
@@ -26,12 +25,6 @@ struct PlasticMembraneLaw {
     double plastic_warp, plastic_weft;  // ε_p at the beginning of the step
   };
   static constexpr bool principal = false;
-
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  static constexpr std::array<LawParameter, 2> parameters = {{
-      {"yield_strain", "", 0, none, true, "Strain of a pulled strip beyond which it stays longer."},
-      {"strain_hardening", "", 0, 1, false, "Stiffness beyond yield over that below."},
-  }};
 
   /// The slips of both threads.
   struct Slip {

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 
 #include "muslin/core/vector_code.hpp"
 #include "muslin/energy/law.hpp"
@@ -22,12 +21,6 @@ struct PlasticSpringLaw {
     double hardening;  // h
     double plastic;    // ε_p at the beginning of the step
   };
-
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  static constexpr std::array<LawParameter, 2> parameters = {{
-      {"yield_strain", "", 0, none, true, "Strain beyond which a spring keeps a length of its own."},
-      {"strain_hardening", "", 0, 1, false, "Stiffness beyond yield over that below."},
-  }};
 
   MUSLIN_INLINE static double slip(const Constants& c, double strain) {
     const double e = strain - c.plastic, excess = (e < 0 ? -e : e) - c.yield;
