@@ -113,7 +113,9 @@ TEST_F(ShellModel, RestMeshHasNoStress) {
   EXPECT_GT(flat.potentials[1].potential->value(flat.rest_positions), 1e-6);
   EXPECT_NEAR(bent.potentials[1].potential->value(bent.rest_positions), 0, 1e-20);
   EXPECT_THAT(message(body("bent.obj", "rest_mesh = 'other.obj'\n")),
-              testing::AllOf(HasSubstr("scene.toml:6:13"), HasSubstr("its polygons are not those of")));
+              testing::AllOf(HasSubstr("scene.toml:6:13"), HasSubstr("its polygons are not those of"),
+                             HasSubstr("its vertex 5 has corners of vertices 6 and 4")));
+  EXPECT_THAT(message(body("bent.obj", "rest_mesh = 'double.obj'\n")), HasSubstr("13 against 12"));
 }
 
 TEST_F(ShellModel, InvertedTrianglesAreAWarning) {

@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 
 #include "muslin/core/error.hpp"
+#include "muslin/core/index.hpp"
 #include "muslin/core/parallel.hpp"
+#include "muslin/shell/triangle_corners.hpp"
 
 namespace muslin {
 namespace {
@@ -22,14 +24,16 @@ constexpr double shortest_projection = 1e-3;
 
 class ShellBuilder {
  public:
-  ShellBuilder(const Mesh& mesh, ConstVectors rest, const Weave& weave)
+  ShellBuilder(const Mesh& mesh, const RestShape& rest, const Weave& weave)
       : mesh_(mesh), rest_(rest), weave_(weave) {
-    require(rest.size() == mesh.vertex_count(), "a rest shape has another number of vertices than its mesh",
-            "give one position for each");
+    require(rest.corners.size() == mesh.face_vertices.size(),
+            "a rest shape has another number of corners than its mesh", "give one position for each");
   }
 
   Shell build() {
     Triangulation cut = triangulate(mesh_);
+    corners_ = triangle_corners(mesh_, cut);
+    at_rest_ = rest_.triangles(corners_);
     shell_.triangles = std::move(cut.triangles);
     shell_.faces = std::move(cut.faces);
     shell_.vertex_areas.assign(mesh_.vertex_count(), 0.0);
@@ -46,7 +50,8 @@ class ShellBuilder {
   }
 
  private:
-  const Vec3& rest(int v) const { return rest_[static_cast<std::size_t>(v)]; }
+  /// The place at rest of a corner, 0 to 2, of a triangle.
+  const Vec3& rest(std::size_t t, int corner) const { return rest_.positions[at(at_rest_[t][corner])]; }
 
   void find_warps() {
     std::vector<std::uint8_t> known(shell_.triangles.size(), 0);
@@ -91,7 +96,7 @@ class ShellBuilder {
     };
     spread();
     Box bounds;
-    for (const Vec3& x : rest_) bounds.extend(x);
+    for (const int corner : rest_.corners) bounds.extend(rest_.positions[at(corner)]);
     int axis;
     bounds.sizes().maxCoeff(&axis);
     for (std::size_t t = 0; t < known.size(); ++t) {
@@ -105,21 +110,28 @@ class ShellBuilder {
 
   /// Returns the warp of one triangle in another, unfolded about their edge into one plane.
   Vec3 unfolded(const EdgeUse& from, const EdgeUse& to) const {
-    const Vec3 along = (rest(from.high) - rest(from.low)).normalized();
-    const Vec3& warp = warps_[static_cast<std::size_t>(from.face)];
+    const Vec3 along = direction_of(from), onward = direction_of(to);
+    const Vec3& warp = warps_[at(from.face)];
     const double side = from.ascends == to.ascends ? -1 : 1;  // −1: it faces the other way
-    return warp.dot(along) * along +
-           side * warp.dot(normal_of(from.face).cross(along)) * normal_of(to.face).cross(along);
+    return warp.dot(along) * onward +
+           side * warp.dot(normal_of(from.face).cross(along)) * normal_of(to.face).cross(onward);
+  }
+
+  /// Returns the direction of an edge at rest in one of its triangles, from the lower vertex to the higher.
+  Vec3 direction_of(const EdgeUse& use) const {
+    const int c = use.corner % 3;  // triangles have three corners each
+    const Vec3 edge = rest(at(use.face), (c + 1) % 3) - rest(at(use.face), c);
+    return (use.ascends ? edge : Vec3(-edge)).normalized();
   }
 
   Vec3 normal_of(int triangle) const {
-    const Vec3i& v = shell_.triangles[static_cast<std::size_t>(triangle)];
-    return (rest(v[1]) - rest(v[0])).cross(rest(v[2]) - rest(v[0])).normalized();
+    const auto t = at(triangle);
+    return (rest(t, 1) - rest(t, 0)).cross(rest(t, 2) - rest(t, 0)).normalized();
   }
 
   void require_area(std::size_t t) const {
     const Vec3i& v = shell_.triangles[t];
-    const Vec3 e1 = rest(v[1]) - rest(v[0]), e2 = rest(v[2]) - rest(v[0]);
+    const Vec3 e1 = rest(t, 1) - rest(t, 0), e2 = rest(t, 2) - rest(t, 0);
     const Vec3 twice = e1.cross(e2);
     const double longest = std::max({e1.squaredNorm(), e2.squaredNorm(), (e2 - e1).squaredNorm()});
     if (!(twice.norm() > flattest * longest)) {
@@ -132,7 +144,7 @@ class ShellBuilder {
 
   void add_triangle(std::size_t t) {
     const Vec3i& v = shell_.triangles[t];
-    const Vec3 e1 = rest(v[1]) - rest(v[0]), e2 = rest(v[2]) - rest(v[0]);
+    const Vec3 e1 = rest(t, 1) - rest(t, 0), e2 = rest(t, 2) - rest(t, 0);
     const Vec3 twice = e1.cross(e2);
     const Vec3 normal = twice.normalized();
     const Vec3& warp = warps_[t];
@@ -143,13 +155,12 @@ class ShellBuilder {
     shell_.inverses.push_back(edges.inverse());
     shell_.areas.push_back(area);
     shell_.area += area;
-    for (int c = 0; c < 3; ++c) shell_.vertex_areas[static_cast<std::size_t>(v[c])] += area / 3;
+    for (int c = 0; c < 3; ++c) shell_.vertex_areas[at(v[c])] += area / 3;
   }
 
   /// None: the triangle has no texture.
   std::optional<Vec3> warp_of(std::size_t t) {
-    const Vec3i& v = shell_.triangles[t];
-    const Vec3 e1 = rest(v[1]) - rest(v[0]), e2 = rest(v[2]) - rest(v[0]);
+    const Vec3 e1 = rest(t, 1) - rest(t, 0), e2 = rest(t, 2) - rest(t, 0);
     const Vec3 normal = e1.cross(e2).normalized();
     if (!weave_.warp) return warp_from_texture(t, e1, e2, normal);
     if (is_across(*weave_.warp, normal)) ++shell_.odd_faces;
@@ -172,75 +183,72 @@ class ShellBuilder {
   /// the triangle E, ∂x/∂u = E U⁻¹ (1, 0).
   std::optional<Vec3> warp_from_texture(std::size_t t, const Vec3& e1, const Vec3& e2,
                                         const Vec3& normal) const {
-    const std::optional<std::array<Vec2, 3>> uv = uvs_of(t);
-    if (!uv) return std::nullopt;
-    const Vec2 u1 = (*uv)[1] - (*uv)[0], u2 = (*uv)[2] - (*uv)[0];
-    const double area = u1.x() * u2.y() - u1.y() * u2.x();
-    const double longest = std::max(u1.squaredNorm(), u2.squaredNorm());
-    if (!(std::abs(area) > flattest * longest)) return std::nullopt;
-    const Vec3 along = (e1 * u2.y() - e2 * u1.y()) / area;
+    const std::optional<TextureTriangle> texture = texture_of(mesh_, corners_[t]);
+    if (!texture || !texture->has_area()) return std::nullopt;
+    const auto& uv = texture->uv;
+    const Vec3 along = (e1 * (uv[2] - uv[0]).y() - e2 * (uv[1] - uv[0]).y()) / texture->twice_area();
     return (along - along.dot(normal) * normal).normalized();
-  }
-
-  std::optional<std::array<Vec2, 3>> uvs_of(std::size_t t) const {
-    const auto f = static_cast<std::size_t>(shell_.faces[t]);
-    const auto face = mesh_.face(f);
-    std::array<Vec2, 3> uv;
-    for (int c = 0; c < 3; ++c) {
-      const auto at = std::find(face.begin(), face.end(), shell_.triangles[t][c]) - face.begin();
-      const auto corner = static_cast<std::size_t>(mesh_.face_offsets[f] + at);
-      const int index = corner < mesh_.corner_uvs.size() ? mesh_.corner_uvs[corner] : -1;
-      if (index < 0) return std::nullopt;
-      uv[static_cast<std::size_t>(c)] = mesh_.uvs[static_cast<std::size_t>(index)];
-    }
-    return uv;
   }
 
   void add_hinges() {
     std::size_t edges = 0;
     for_each_edge(triangle_sides(shell_.triangles), [&](std::span<const EdgeUse> edge) {
       ++edges;
-      shell_.mean_edge += (rest(edge[0].high) - rest(edge[0].low)).norm();
+      const int c = edge[0].corner % 3;  // triangles have three corners each
+      shell_.mean_edge += (rest(at(edge[0].face), (c + 1) % 3) - rest(at(edge[0].face), c)).norm();
       for (const EdgeUse& further : edge.subspan(1)) add_hinge(edge[0], further);
     });
     shell_.mean_edge /= static_cast<double>(edges);
   }
 
   void add_hinge(const EdgeUse& first, const EdgeUse& second) {
-    const auto t1 = static_cast<std::size_t>(first.face), t2 = static_cast<std::size_t>(second.face);
+    const auto t1 = at(first.face), t2 = at(second.face);
     const Vec3i& v = shell_.triangles[t1];
-    const int c = first.corner % 3;  // triangles have three corners each
+    const int c1 = first.corner % 3, c2 = second.corner % 3;
     Hinge hinge;
-    hinge.vertices = {v[c], v[(c + 1) % 3], v[(c + 2) % 3], shell_.triangles[t2][(second.corner + 2) % 3]};
+    hinge.vertices = {v[c1], v[(c1 + 1) % 3], v[(c1 + 2) % 3], shell_.triangles[t2][(c2 + 2) % 3]};
     if (hinge.vertices[2] == hinge.vertices[3]) {
       throw Error(ErrorKind::input,
                   fmt::format("polygons {} and {} both have the triangle of vertices {}, {}, {}",
                               shell_.faces[t1] + 1, shell_.faces[t2] + 1, v[0] + 1, v[1] + 1, v[2] + 1),
                   "delete double polygons in the modeller");
     }
-    const Vec3 edge = rest(hinge.vertices[1]) - rest(hinge.vertices[0]);
-    hinge.length = edge.norm();
+    const bool along = first.ascends == second.ascends;  // both triangles run along the edge alike
+    const std::array ends1 = {rest(t1, c1), rest(t1, (c1 + 1) % 3)};
+    const std::array ends2 = {rest(t2, along ? c2 : (c2 + 1) % 3), rest(t2, along ? (c2 + 1) % 3 : c2)};
+    const Vec3 edge1 = ends1[1] - ends1[0], edge2 = ends2[1] - ends2[0];
+    const double length1 = edge1.norm(), length2 = edge2.norm();
+    hinge.length = (length1 + length2) / 2;
     hinge.area = shell_.areas[t1] + shell_.areas[t2];
-    hinge.angle = hinge_angle(rest(hinge.vertices[0]), rest(hinge.vertices[1]), rest(hinge.vertices[2]),
-                              rest(hinge.vertices[3]));
+    const bool seam = ends1 != ends2;
+    if (seam) ++shell_.seam_hinges;
+    if (!seam && !rest_.unfolded)
+      hinge.angle = hinge_angle(ends1[0], ends1[1], rest(t1, (c1 + 2) % 3), rest(t2, (c2 + 2) % 3));
     // The bending direction is across the edge: cos² of its angle with warp is sin² of that of the edge.
-    const auto share = [&](std::size_t t) { return 1 - std::pow(edge.dot(warps_[t]) / hinge.length, 2); };
+    const double share1 = 1 - std::pow(edge1.dot(warps_[t1]) / length1, 2),
+                 share2 = 1 - std::pow(edge2.dot(warps_[t2]) / length2, 2);
     hinge.warp_share =
-        std::clamp((share(t1) * shell_.areas[t1] + share(t2) * shell_.areas[t2]) / hinge.area, 0.0, 1.0);
+        std::clamp((share1 * shell_.areas[t1] + share2 * shell_.areas[t2]) / hinge.area, 0.0, 1.0);
     shell_.hinges.push_back(hinge);
   }
 
   const Mesh& mesh_;
-  ConstVectors rest_;
+  const RestShape& rest_;
   const Weave& weave_;
   Shell shell_;
-  std::vector<Vec3> warps_;  // #T
+  std::vector<Vec3i> corners_;  // #T, of the mesh's polygons
+  std::vector<Vec3i> at_rest_;  // #T, positions of the rest shape
+  std::vector<Vec3> warps_;     // #T
 };
 
 }  // namespace
 
+Shell build_shell(const Mesh& mesh, const RestShape& rest, const Weave& weave) {
+  return ShellBuilder(mesh, rest, weave).build();
+}
+
 Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave) {
-  return ShellBuilder(mesh, rest_positions, weave).build();
+  return build_shell(mesh, rest_of_vertices(mesh, rest_positions), weave);
 }
 
 double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3) {

@@ -14,6 +14,7 @@
 #include "muslin/api.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/mesh.hpp"
+#include "muslin/shell/rest_shape.hpp"
 
 namespace muslin {
 
@@ -22,9 +23,9 @@ using Mat2 = Eigen::Matrix2d;
 /// Two triangles that share the edge of vertices 0 and 1; vertices 2 and 3 are opposite to it.
 struct Hinge {  // no padding: models are compared by its bytes
   std::array<int, 4> vertices{};
-  double length = 0;      ///< of the edge at rest [m]
+  double length = 0;      ///< of the edge at rest, the mean of both triangles [m]
   double area = 0;        ///< of both triangles at rest [m²]
-  double angle = 0;       ///< between the normals at rest, −π … π
+  double angle = 0;       ///< between the normals at rest, −π … π; 0 at seams
   double warp_share = 0;  ///< cos² of the angle between warp and the bending direction, across the edge
 };
 
@@ -38,6 +39,7 @@ struct Shell {
   double area = 0;                   ///< at rest [m²]
   double mean_edge = 0;              ///< at rest [m]
   std::size_t odd_faces = 0;         ///< triangles perpendicular to the given warp; they got another
+  std::size_t seam_hinges = 0;       ///< whose triangles do not share the edge at rest
 
   std::size_t vertex_count() const { return vertex_areas.size(); }
 };
@@ -48,9 +50,12 @@ struct Weave {
   std::optional<Vec3> warp;
 };
 
-/// `rest_positions` (#V of the mesh by 3) is the shape without stress. Errors: input, naming the polygon and
-/// the vertices (counted from 1), for triangles given twice or without area, vertices of no polygon, and
-/// texture coordinates that are missing or without area where they are needed.
+/// Edges whose ends lie apart in the rest shape of their two triangles are seams: the triangles are flat
+/// there at rest. Errors: input, naming the polygon and the vertices (counted from 1), for triangles given
+/// twice or without area, vertices of no polygon, and texture coordinates that are missing or without area
+/// where they are needed.
+MUSLIN_API Shell build_shell(const Mesh& mesh, const RestShape& rest, const Weave& weave);
+/// The vertices of the mesh at `rest_positions` (#V by 3) are the shape without stress.
 MUSLIN_API Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave);
 
 /// Returns the angle of a hinge: 0 if flat, positive if vertices 2 and 3 turn away from the normal

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,31 +18,15 @@
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/shell/inverted_triangles.hpp"
 #include "muslin/shell/rest_scale.hpp"
+#include "muslin/shell/rest_shape.hpp"
+#include "muslin/shell/triangle_corners.hpp"
 
 namespace muslin {
 namespace {
 
 constexpr double largest_cloth = 20, largest_plausible = 200;  // [m]
-constexpr double folding_size = 8;  // cloth of fewer edges has no folds
-
-/// Counts polygons that lack texture coordinates, or have no area in the texture.
-std::size_t faces_without_texture(const Mesh& mesh) {
-  std::size_t count = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto begin = static_cast<std::size_t>(mesh.face_offsets[f]), end = begin + mesh.face(f).size();
-    bool missing = false;
-    double area = 0;
-    for (std::size_t c = begin; c < end && !missing; ++c) {
-      const int uv = mesh.corner_uvs[c], next = mesh.corner_uvs[c + 1 < end ? c + 1 : begin];
-      missing = uv < 0 || next < 0;
-      if (missing) break;
-      const Vec2 &a = mesh.uvs[static_cast<std::size_t>(uv)], &b = mesh.uvs[static_cast<std::size_t>(next)];
-      area += a.x() * b.y() - a.y() * b.x();
-    }
-    count += missing || area == 0 ? 1 : 0;
-  }
-  return count;
-}
+constexpr double folding_size = 8;                             // cloth of fewer edges has no folds
+constexpr double largest_ratio = 5;  // of lengths of rest shape and mesh that are in the same units
 
 class ShellBuilder {
  public:
@@ -56,7 +41,7 @@ class ShellBuilder {
   std::shared_ptr<Component> build() {
     const std::vector<int> fabric_of_face = lay_fabrics(read_body_mesh(settings_, inputs_, body_));
     body_.maps = read_maps(own_.variations, shell_kind.keys(), inputs_.files, body_);
-    const Mesh rest = rest_mesh();
+    const RestShape rest = rest_shape();
     at_place(settings_.mesh_place, file_, [&] { make_shell(rest); });
     for (const int face : body_.shell.faces) body_.triangle_fabrics.push_back(fabric_of_face[at(face)]);
     vary_material();
@@ -101,46 +86,59 @@ class ShellBuilder {
                 "give it moduli, or make its faces a body of their own, joined by an [[attachment]]");
   }
 
-  /// The stress-free shape: the mesh as it was modelled (scaled, not turned), or another of the same
-  /// polygons.
-  Mesh rest_mesh() {
-    if (own_.rest_mesh.empty()) return body_.mesh;
+  /// The stress-free shape: the mesh as it was modelled (scaled, not turned), another of the same polygons,
+  /// or the texture.
+  RestShape rest_shape() {
+    if (own_.rest == RestSource::uv)
+      return at_place(settings_.mesh_place, file_,
+                      [&] { return rest_of_texture(body_.mesh, own_.uv_scale); });
+    if (own_.rest_mesh.empty()) return rest_of_vertices(body_.mesh, body_.mesh.positions);
     const std::string rest_file = inputs_.files.resolve(own_.rest_mesh).string();
     return at_place(own_.rest_mesh_place, rest_file, [&] {
       Mesh rest = inputs_.files.mesh(own_.rest_mesh).mesh;
       require_usable(rest, rest_file);
-      if (rest.vertex_count() != body_.mesh.vertex_count() || rest.face_offsets != body_.mesh.face_offsets ||
-          rest.face_vertices != body_.mesh.face_vertices) {
-        throw Error(
-            ErrorKind::input,
-            fmt::format("its polygons are not those of {} ({} vertices and {} polygons against {} and {})",
-                        file_, rest.vertex_count(), rest.face_count(), body_.mesh.vertex_count(),
-                        body_.mesh.face_count()),
-            "make the rest mesh by moving the vertices of a copy");
-      }
+      require_same_polygons(rest);
       for (Vec3& x : rest.positions) x = settings_.scale.cwiseProduct(x);
-      return rest;
+      return RestShape{std::move(rest.positions), std::move(rest.face_vertices)};
     });
   }
 
-  void make_shell(const Mesh& rest) {
-    inputs_.progress.at(0.5, "shell");
+  /// A rest mesh may be cut where the mesh is sewn, but joins no vertices that lie apart in the mesh.
+  void require_same_polygons(const Mesh& rest) const {
+    const auto fail = [&](const std::string& difference) {
+      throw Error(
+          ErrorKind::input, fmt::format("its polygons are not those of {}: {}", file_, difference),
+          "make the rest mesh of a copy: move its vertices and cut it along seams, but keep its polygons "
+          "and their order");
+    };
+    const Mesh& mesh = body_.mesh;
+    if (rest.face_offsets != mesh.face_offsets)
+      fail(fmt::format("{} against {}, or other numbers of corners", rest.face_count(), mesh.face_count()));
+    std::vector<int> vertex_of(rest.vertex_count(), -1);
+    for (std::size_t c = 0; c < rest.face_vertices.size(); ++c) {
+      const int v = mesh.face_vertices[c];
+      int& known = vertex_of[static_cast<std::size_t>(rest.face_vertices[c])];
+      if (known < 0) known = v;
+      if (mesh.positions[static_cast<std::size_t>(known)] != mesh.positions[static_cast<std::size_t>(v)])
+        fail(fmt::format("its vertex {} has corners of vertices {} and {}", rest.face_vertices[c] + 1,
+                         known + 1, v + 1));
+    }
+  }
+
+  Weave weave(const RestShape& rest) {
     Weave weave{own_.warp};
-    if (weave.warp && own_.rest_mesh.empty()) {
+    if (weave.warp && own_.rest == RestSource::mesh && own_.rest_mesh.empty()) {
       // The direction refers to the mesh as modelled.
       weave.warp = placement(Vec3::Zero(), settings_.rotate, Vec3::Ones()) * *weave.warp;
     }
     const std::vector<int>& uvs = body_.mesh.corner_uvs;
     const bool textured = std::any_of(uvs.begin(), uvs.end(), [](int uv) { return uv >= 0; });
-    const std::size_t bare = textured ? faces_without_texture(body_.mesh) : 0;
-    if (!weave.warp && bare > 0)
-      say(
-          fmt::format("{} of {} polygons have no place in the texture; their threads continue those of their "
-                      "neighbours; unwrap them, or give `warp` a direction",
-                      bare, body_.mesh.face_count()));
+    if (textured) warn_of_bare_faces();
     if (!weave.warp && !textured) {
+      Box box;
+      for (const int corner : rest.corners) box.extend(rest.positions[at(corner)]);
       int axis;
-      rest.bounds().sizes().maxCoeff(&axis);
+      box.sizes().maxCoeff(&axis);
       weave.warp = Vec3::Unit(axis);
       const ShellMaterial& m = body_.material();
       if (m.membrane_warp != m.membrane_weft || m.warp_curve != m.weft_curve ||
@@ -151,8 +149,15 @@ class ShellBuilder {
             "xyz"[axis]));
       }
     }
+    return weave;
+  }
+
+  void make_shell(const RestShape& rest) {
+    inputs_.progress.at(0.5, "shell");
     body_.sheet = true;
-    body_.shell = build_shell(body_.mesh, rest.positions, weave);
+    body_.shell = build_shell(body_.mesh, rest, weave(rest));
+    body_.uv_scale = rest.uv_scale;
+    warn_of_other_scale();
     body_.woven_areas = body_.shell.areas;
     body_.woven_vertex_areas = body_.shell.vertex_areas;
     scale_rest(body_.shell, [this](std::span<const int> vertices) { return body_.rest_scale(vertices, 0); });
@@ -218,8 +223,31 @@ class ShellBuilder {
     }
   }
 
-  void warn_of_inverted_triangles(const Mesh& rest) {
-    const std::vector<int> inverted = inverted_triangles(body_.shell.triangles, rest.positions);
+  /// Warns of polygons without texture, of which threads or the flat pattern are taken.
+  void warn_of_bare_faces() {
+    const std::size_t bare = faces_without_texture(body_.mesh).size();
+    const bool flat = own_.rest == RestSource::uv;
+    if (bare == 0 || (own_.warp && !flat)) return;
+    std::string effect = flat ? "their stress-free shape is that of the mesh" : "";
+    if (!own_.warp)
+      effect += fmt::format("{}their threads continue those of their neighbours", flat ? ", and " : "");
+    say(fmt::format("{} of {} polygons have no place in the texture; {}; unwrap them{}", bare,
+                    body_.mesh.face_count(), effect, flat ? "" : ", or give `warp` a direction"));
+  }
+
+  /// Warns of patterns in other units than the mesh.
+  void warn_of_other_scale() {
+    const double ratio = std::sqrt(body_.shell.area / body_.report.area);
+    if (ratio < largest_ratio && ratio > 1 / largest_ratio) return;
+    say(fmt::format("its stress-free shape is {:.3g} times as long as the mesh; {}", ratio,
+                    own_.rest == RestSource::uv ? "correct or leave out `uv_scale`"
+                                                : "bring `rest_mesh` to the scale of the mesh"));
+  }
+
+  void warn_of_inverted_triangles(const RestShape& rest) {
+    const std::vector<Vec3i> triangles =
+        rest.triangles(triangle_corners(body_.mesh, triangulate(body_.mesh)));
+    const std::vector<int> inverted = inverted_triangles(triangles, rest.positions);
     if (inverted.empty()) return;
     say(fmt::format(
         "{} turned over in the stress-free shape, the first in polygon {}; move {} back in the modeller",

@@ -60,6 +60,10 @@ nlohmann::ordered_json fabrics_json(const ShellBody& body) {
   return list;
 }
 
+bool rest_differs(const ShellBodySettings& own) {
+  return own.rest == RestSource::uv || !own.rest_mesh.empty();
+}
+
 }  // namespace
 
 const ShellMaterial& ShellBody::material() const {
@@ -259,6 +263,12 @@ std::string ShellBody::description_json() const {
   json["area"] = shell.area;
   json["mean_edge"] = shell.mean_edge;
   json["trusted_edge"] = shortest_trusted_edge().length();
+  if (rest_differs(own())) {
+    json["rest"] = {{"of", own().rest == RestSource::uv ? "uv" : "rest_mesh"},
+                    {"seam_hinges", shell.seam_hinges},
+                    {"start_stretch", muslin::max_stretch(shell, mesh.positions)}};
+    if (own().rest == RestSource::uv) json["rest"]["uv_scale"] = uv_scale;
+  }
   if (const auto limit = stretch_limit()) json["stretch_limit"] = *limit;
   json["warp"] = own().warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
   json["material"] = settings.material.name;
@@ -274,6 +284,14 @@ std::string ShellBody::description() const {
       fmt::format("body {}: {} ({}, shell)\n", name, settings.mesh, counted(mesh.face_count(), "polygon"));
   text += fmt::format("  shell       {} vertices, {} triangles, {} hinges, edges of {:.4g} m on average\n",
                       s.vertices, s.triangles, s.hinges, shell.mean_edge);
+  if (rest_differs(own())) {
+    text += own().rest == RestSource::uv
+                ? fmt::format("  rest        the texture, {:.4g} m per unit", uv_scale)
+                : fmt::format("  rest        {}", own().rest_mesh);
+    text += fmt::format(", {}; stretched to {:.4g} at the start\n",
+                        counted(shell.seam_hinges, "hinge on seams", "hinges on seams"),
+                        muslin::max_stretch(shell, mesh.positions));
+  }
   for (std::size_t f = 0; f < fabrics.size(); ++f) text += description_of(f);
   if (const double edge = shortest_trusted_edge().length(); edge > 0)
     text += fmt::format("  drape       as the fabric's with edges of up to {:.2g} m\n", edge);

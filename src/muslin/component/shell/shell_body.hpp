@@ -34,6 +34,7 @@ class ShellBody final : public Component {
   std::vector<int> triangle_fabrics;  ///< #T, index into `fabrics`
   /// #T where maps or several fabrics vary the material; empty: one for all.
   std::vector<ShellMaterial> triangle_materials;
+  double uv_scale = 0;  ///< with `rest = "uv"`: metres per unit of the texture
 
   std::string kind() const override { return "shell"; }
   void add_terms(std::span<const std::uint8_t> held) override;

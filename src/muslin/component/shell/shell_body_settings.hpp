@@ -16,10 +16,15 @@ namespace muslin {
 /// (energy/cell_buckling.hpp), or with the moduli of tension.
 enum class Compression { buckling, elastic };
 
+/// The shape without stress: that of a mesh, or the texture coordinates as a flat pattern.
+enum class RestSource { mesh, uv };
+
 struct ShellBodySettings {
   std::optional<double> thickness;  ///< as contact sees it [m]; default: see shell_body.hpp
-  std::string rest_mesh;            ///< path of the shape without stress; empty: the mesh
+  RestSource rest = RestSource::mesh;
+  std::string rest_mesh;  ///< path of the shape without stress; empty: the mesh
   Place rest_mesh_place;
+  std::optional<double> uv_scale;  ///< metres per unit of the texture; default: areas as those of the mesh
   /// Direction of the warp threads; default: along the texture's u, or the longest side.
   std::optional<Vec3> warp;
   double rest_scale_warp = 1;             ///< rest length over that of the mesh or the rest mesh

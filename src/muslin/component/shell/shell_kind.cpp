@@ -99,8 +99,8 @@ schema::Declaration fabric_key() {
       .means("fabrics of some faces; the others have `material`");
 }
 
-const schema::Table& keys() {
-  static const schema::Table table = kind_table<Own>(
+schema::Table declare_shell() {
+  schema::Table table = kind_table<Own>(
       "shell",
       {schema::number("thickness", &Own::thickness)
            .unit("m")
@@ -109,7 +109,18 @@ const schema::Table& keys() {
            .means("thickness in contact"),
        schema::path("rest_mesh", &Own::rest_mesh, &Own::rest_mesh_place)
            .otherwise("the mesh")
-           .means("a mesh with the same polygons in the stress-free shape; `scale` applies to it"),
+           .means("a mesh with the same polygons in the stress-free shape, cut along seams or not; `scale` "
+                  "applies to it"),
+       schema::word("rest", &Own::rest, {"mesh", "uv"})
+           .shown_if<Own>([](const Own& own) { return own.rest == RestSource::uv; })
+           .means("`\"mesh\"`: the stress-free shape is that of `rest_mesh`, or else of the mesh · `\"uv\"`: "
+                  "the "
+                  "texture coordinates are the flat pattern"),
+       schema::number("uv_scale", &Own::uv_scale)
+           .unit("m")
+           .range({1e-6, 1e6, false})
+           .otherwise("mesh and pattern have equal areas")
+           .means("length of one unit of the texture, only with `rest = \"uv\"`"),
        schema::number("rest_scale_warp", &Own::rest_scale_warp)
            .range({0.01, 100, false})
            .varies(&Own::variations, {.map = true})
@@ -144,6 +155,19 @@ const schema::Table& keys() {
                   "5 %"),
        fabric_key()},
       {material_key(material_use, &BodySettings::material)});
+  schema::add_rule<BodySettings>(table, [](const BodySettings& body, const schema::Subject& subject) {
+    const Own& own = body.own.as<Own>();
+    if (own.rest == RestSource::mesh && own.uv_scale)
+      throw subject.error("uv_scale", "`uv_scale` has no effect without `rest = \"uv\"`", "give both");
+    if (own.rest == RestSource::uv && !own.rest_mesh.empty())
+      throw subject.error("rest", "the stress-free shape is given twice, by `rest` and `rest_mesh`",
+                          "keep one of them");
+  });
+  return table;
+}
+
+const schema::Table& keys() {
+  static const schema::Table table = declare_shell();
   return table;
 }
 
@@ -194,11 +218,8 @@ void finish(const TomlTable& table, const std::filesystem::path& folder, BodySet
     own.stretch_limit = largest_stretch_limit(*body.material.shell);
 }
 
-std::vector<std::string*> cut_meshes(BodySettings& body) {
-  auto& own = body.own.as<Own>();
-  if (own.rest_mesh.empty()) return {&body.mesh};
-  return {&own.rest_mesh, &body.mesh};
-}
+/// The rest mesh belongs to the polygons, which a cut keeps.
+std::vector<std::string*> cut_meshes(BodySettings& body) { return {&body.mesh}; }
 
 }  // namespace
 
