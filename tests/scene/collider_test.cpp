@@ -57,6 +57,30 @@ const std::string cloth =
     "[[body]]\nname = 'cloth'\nmesh = 'sheet.obj'\nmodel = 'shell'\nmaterial = { areal_density = 0.5, "
     "membrane_warp = 100, membrane_weft = 400, bending_warp = 1e-4 }\n";
 
+TEST_F(ColliderModel, KeyframesTurnByTheAnglesWritten) {
+  const auto motion = [](const std::string& keys) {
+    return parse(
+               "[[body]]\nmesh = 'sheet.obj'\nvoxel_width = 0.1\nmaterial = 'rubber'\n[[pin]]\nwhere = { "
+               "nearest = [[0, "
+               "0, 0]] }\nkeyframes = [" +
+               keys + "]\n")
+        .pins.front()
+        .motion;
+  };
+  const auto turned = [](const Motion& motion, double time) { return Vec3(motion.at(time) * Vec3(1, 0, 0)); };
+  const Motion full = motion("{ time = 0 }, { time = 1, rotate = [0, 0, 360] }");
+  EXPECT_TRUE(full.turns());
+  EXPECT_LT((turned(full, 0.25) - Vec3(0, 1, 0)).norm(), 1e-12);
+  EXPECT_LT((turned(full, 0.5) - Vec3(-1, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((turned(full, 0.75) - Vec3(0, -1, 0)).norm(), 1e-12);
+  EXPECT_LT((turned(full, 1) - Vec3(1, 0, 0)).norm(), 1e-12);
+  const Motion far = motion("{ time = 0 }, { time = 3, rotate = [0, 0, 270] }");
+  EXPECT_LT((turned(far, 1) - Vec3(0, 1, 0)).norm(), 1e-12);
+  const Motion twice = motion("{ time = 1, rotate = [0, 0, -360] }, { time = 2, rotate = [0, 0, 360] }");
+  EXPECT_LT((turned(twice, 1.125) - Vec3(0, 1, 0)).norm(), 1e-12);
+  EXPECT_LT((turned(twice, 0) - Vec3(1, 0, 0)).norm(), 1e-12);
+}
+
 TEST_F(ColliderModel, EveryKeyIsRead) {
   const Scene scene = parse(cloth + R"(thickness = 0.002
 self_contact = false

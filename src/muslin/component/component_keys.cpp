@@ -36,16 +36,20 @@ const schema::Table& motion_keyframe_table() {
        schema::custom<Motion::Key>(
            "rotate", {Type::vector},
            [](const Key& key, const TomlTable& given, Motion::Key& s) {
-             s.rotate = rotation_from_degrees(given.vector(key.name, key.unit));
+             s.angles = given.vector(key.name, key.unit);
+             s.rotate = rotation_from_degrees(s.angles);
            },
-           [](const Key&, const Motion::Key& s, TomlValue& out) {
+           [](const Key& key, const Motion::Key& s, TomlValue& out) {
+             // A quaternion does not tell a full turn from none.
+             if (s.angles.cwiseAbs().maxCoeff() >= 180)
+               schema::append(out, key.name, schema::vector_value(s.angles));
              schema::append(out, "quaternion",
                             schema::list({schema::real(s.rotate.w()), schema::real(s.rotate.x()),
                                           schema::real(s.rotate.y()), schema::real(s.rotate.z())}));
            })
            .unit("degrees")
            .otherwise("`[0, 0, 0]`")
-           .means("rotation about `pivot`: about the x axis, then y, then z"),
+           .means("rotation about `pivot`: about the x axis, then y, then z; 360 is a full turn"),
        scale_of(&Motion::Key::scale)
            .shown_if<Motion::Key>([](const Motion::Key& key) { return key.scale != Vec3::Ones(); })
            .means("of pins: scale about `pivot`, a number or one per axis; applied first"),

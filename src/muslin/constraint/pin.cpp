@@ -2,10 +2,18 @@
 
 #include <algorithm>
 
+#include "muslin/core/euler_angles.hpp"
+
 namespace muslin {
 
 bool Motion::scales() const {
   return std::any_of(keys.begin(), keys.end(), [](const Key& key) { return key.scale != Vec3::Ones(); });
+}
+
+bool Motion::turns() const {
+  return std::any_of(keys.begin(), keys.end(), [&](const Key& key) {
+    return !key.rotate.isApprox(keys.front().rotate, 1e-12) || key.angles != keys.front().angles;
+  });
 }
 
 Eigen::Isometry3d Motion::at(double time) const {
@@ -17,7 +25,10 @@ Eigen::Isometry3d Motion::at(double time) const {
   if (!around.is_single()) {
     const double share = around.share();
     translate += share * (around.to.translate - around.from.translate);
-    rotate = rotate.normalized().slerp(share, around.to.rotate.normalized());
+    const Vec3 turn = around.to.angles - around.from.angles;
+    rotate = turn.cwiseAbs().maxCoeff() < 180
+                 ? rotate.normalized().slerp(share, around.to.rotate.normalized())
+                 : Eigen::Quaterniond(turned_by_degrees(around.from.angles + share * turn));
   }
   result.linear() = rotate.normalized().toRotationMatrix();
   result.translation() = translate + pivot - result.linear() * pivot;

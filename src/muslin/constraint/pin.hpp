@@ -16,7 +16,8 @@
 namespace muslin {
 
 /// A motion given by keyframes: between them translation and scale go along a line and the rotation along an
-/// arc, at a rate that the interpolation sets. Constant before the first and after the last. No keyframes:
+/// arc, at a rate that the interpolation sets. From half a turn about an axis on, the angles themselves go
+/// along a line, so that 360° are a full turn. Constant before the first and after the last. No keyframes:
 /// the identity.
 struct MUSLIN_API Motion {
   struct Key {
@@ -25,11 +26,13 @@ struct MUSLIN_API Motion {
     Eigen::Quaterniond rotate = Eigen::Quaterniond::Identity();
     Vec3 scale = Vec3::Ones();  ///< along the axes before the rotation, > 0; of pins only
     Interpolation interpolation = Interpolation::linear;  ///< to the next key
+    Vec3 angles = Vec3::Zero();  ///< of `rotate`, about x, then y, then z, as written [degrees]
   };
   std::vector<Key> keys;      ///< times ascend strictly
   Vec3 pivot = Vec3::Zero();  ///< rotation and scale leave this point where it is [m]
 
   bool scales() const;
+  bool turns() const;
   /// Returns the motion without its scale.
   Eigen::Isometry3d at(double time) const;
   Vec3 scale_at(double time) const;

@@ -1,6 +1,5 @@
 #include "muslin/component/collider/affine_collider.hpp"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -11,12 +10,6 @@ using Shape = ColliderSettings::Shape;
 
 /// The longest step in single precision [s]; the stiffness is that of rigid/rigid_body.cpp.
 constexpr double longest_rigid = 1.0 / 16;
-
-bool turns(const Motion& motion) {
-  return std::any_of(motion.keys.begin(), motion.keys.end(), [&](const Motion::Key& key) {
-    return !key.rotate.isApprox(motion.keys.front().rotate, 1e-12);
-  });
-}
 
 }  // namespace
 
@@ -50,7 +43,7 @@ std::optional<ContactPart> AffineCollider::contact_part() const {
     case Shape::plane: {
       const Vec3 normal = start.linear() * settings.normal;
       ContactPlane plane = {add_point(frame.centre), normal};
-      if (turns(settings.motion)) {
+      if (settings.motion.turns()) {
         // Within the corners that carry them.
         const double reach = frame.radii.x() / 2;
         const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
