@@ -29,9 +29,9 @@ def of_report(report, model, name):
     if report["faces"] == 0:
         say(ERROR, "The mesh has no faces: fill it, or choose another object")
         return notices
-    if report["non_manifold_edges"]:
+    if report["non_manifold_edges"] and not shell:
         n = counted(report["non_manifold_edges"], "edge is", "edges are")
-        say(bad, f"{n} shared by three or more faces: Select > All by Trait > Non Manifold, and separate them")
+        say(WARNING, f"{n} shared by three or more faces: Select > All by Trait > Non Manifold, and separate them")
     if report["degenerate_faces"]:
         n = counted(report["degenerate_faces"], "face has", "faces have")
         say(bad, f"{n} no area: Mesh > Clean Up > Degenerate Dissolve")
@@ -41,6 +41,10 @@ def of_report(report, model, name):
     if report["unused_vertices"]:
         n = counted(report["unused_vertices"], "vertex belongs", "vertices belong")
         say(bad, f"{n} to no face: Mesh > Clean Up > Delete Loose")
+    if report["near_border_vertices"] > 1:
+        n = counted(report["near_border_vertices"], "vertex", "vertices")
+        say(WARNING, f"{n} on borders nearly coincide with others, so that the borders come apart: "
+                     f"Mesh > Merge > By Distance, {1.5 * report['near_border_distance']:.2g} m")
     if report["flipped_edges"]:
         n = counted(report["flipped_edges"], "edge", "edges")
         say(WARNING, f"Faces disagree about their front side along {n}: Mesh > Normals > Recalculate Outside")
@@ -49,7 +53,7 @@ def of_report(report, model, name):
     if shell and report["closed"]:
         say(INFO, "The mesh is closed: as a shell it is a hollow skin; choose Solid to fill it")
     size = max(b - a for a, b in zip(report["min"], report["max"]))
-    if size > 200 or size < 1e-3:
+    if size > (20 if shell else 200) or size < 1e-3:
         say(WARNING, f"It is {size:.4g} m across: check the scale of the object and Unit Scale of the scene")
     return notices
 

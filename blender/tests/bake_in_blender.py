@@ -524,11 +524,6 @@ class Bad(HostTest):
         cloth(host.mesh_object("Points", [(0, 0, 0), (1, 0, 0)], []))
         self.refuse("Points.*no faces")
 
-    def test_three_faces_on_an_edge(self):
-        cloth(host.mesh_object("Fan", [(0, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 0, 0), (0, 1, 0)],
-                               [(0, 1, 2), (0, 1, 3), (0, 1, 4)]))
-        self.refuse("Fan: 1 edge is shared by three or more faces.*Non Manifold")
-
     def test_loose_vertices_and_faces_without_area(self):
         cloth(host.mesh_object("Loose", [(0, 0, 0), (0, 0, 1), (1, 0, 0), (5, 5, 5)], [(0, 1, 2)]))
         self.refuse("Loose: 1 vertex belongs to no face.*Delete Loose")

@@ -245,7 +245,7 @@ class Advice(unittest.TestCase):
     def report(self, **changes):
         return dict({"faces": 10, "non_manifold_edges": 0, "degenerate_faces": 0, "duplicate_faces": 0,
                      "unused_vertices": 0, "flipped_edges": 0, "closed": False, "open_edges": 4, "min": [0, 0, 0],
-                     "max": [1, 1, 0]}, **changes)
+                     "max": [1, 1, 0], "near_border_vertices": 0, "near_border_distance": 0}, **changes)
 
     def levels(self, model="shell", **changes):
         return [n.level for n in advice.of_report(self.report(**changes), model, "Cloth")]
@@ -254,11 +254,15 @@ class Advice(unittest.TestCase):
         self.assertEqual(self.levels(), [])
 
     def test_each_fault_is_said_and_stops_a_shell_only(self):
-        for fault in ("non_manifold_edges", "degenerate_faces", "duplicate_faces", "unused_vertices"):
+        for fault in ("degenerate_faces", "duplicate_faces", "unused_vertices"):
             self.assertEqual(self.levels(**{fault: 2}), [advice.ERROR], fault)
             self.assertIn(advice.WARNING, self.levels("lattice", **{fault: 2}), fault)
             self.assertNotIn(advice.ERROR, self.levels("lattice", **{fault: 2}), fault)
         self.assertEqual(self.levels(flipped_edges=1), [advice.WARNING])
+        self.assertEqual(self.levels(non_manifold_edges=1), [])
+        self.assertIn(advice.WARNING, self.levels("lattice", non_manifold_edges=1))
+        self.assertEqual(self.levels(near_border_vertices=42, near_border_distance=1.5e-5), [advice.WARNING])
+        self.assertEqual(self.levels(max=[80, 1, 0]), [advice.WARNING])
         self.assertEqual(self.levels(faces=0), [advice.ERROR])
         self.assertEqual(self.levels(max=[1000, 1, 0]), [advice.WARNING])
 

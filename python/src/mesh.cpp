@@ -148,6 +148,9 @@ void bind_report(nb::module_& m) {
       .def_ro("components", &MeshReport::components, "Parts that share no vertex.")
       .def_ro("open_edges", &MeshReport::open_edges, "Edges of one face only.")
       .def_ro("non_manifold_edges", &MeshReport::non_manifold_edges, "Edges of three faces or more.")
+      .def_ro("near_border_vertices", &MeshReport::near_border_vertices,
+              "Vertices on borders that nearly coincide with others but are not joined.")
+      .def_ro("near_border_distance", &MeshReport::near_border_distance, "Their largest distance [m].")
       .def_ro("flipped_edges", &MeshReport::flipped_edges,
               "Edges that two faces traverse in the same direction.")
       .def_ro("degenerate_faces", &MeshReport::degenerate_faces, "Faces without area.")

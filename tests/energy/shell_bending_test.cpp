@@ -3,6 +3,7 @@
 #include "muslin/energy/shell_bending.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -63,6 +64,42 @@ TEST(ShellBending, PassesTheBatteryBentAndFolded) {
     test::expect_elastic_energy_is_sound(energy, mesh.positions,
                                          test::sum(test::rolled(mesh.positions, curvature), 1, noise), 0.1);
   }
+}
+
+/// Three sheets of 4 by 3 squares that meet at 120° in the x axis, their polygons in this order of sheets.
+Mesh three_sheets(const std::array<int, 3>& order) {
+  Mesh mesh;
+  for (int i = 0; i <= 4; ++i) mesh.positions.emplace_back(0.1 * i, 0, 0);
+  for (int s = 0; s < 3; ++s) {
+    const double angle = 2 * pi * s / 3;
+    for (int k = 1; k <= 3; ++k)
+      for (int i = 0; i <= 4; ++i)
+        mesh.positions.emplace_back(0.1 * i, 0.1 * k * std::cos(angle), 0.1 * k * std::sin(angle));
+  }
+  for (const int s : order) {
+    const auto vertex = [&](int i, int k) { return k == 0 ? i : 5 + 15 * s + 5 * (k - 1) + i; };
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 4; ++i) {
+        std::array face = {vertex(i, k), vertex(i + 1, k), vertex(i + 1, k + 1), vertex(i, k + 1)};
+        // The middle sheet has its front on the other side.
+        if (s == 1) std::reverse(face.begin(), face.end());
+        mesh.add_face(face);
+      }
+  }
+  return mesh;
+}
+
+TEST(ShellBending, ThreeSheetsAtAnEdgeBendAlikeWhicheverComesFirst) {
+  const Mesh mesh = three_sheets({0, 1, 2});
+  const BendingModuli moduli{1e-4, 1e-4, 1e-4};
+  const ShellBending energy = bending(mesh, moduli);
+  const std::vector<Vec3> x =
+      test::sum(mesh.positions, 1, test::random_vectors(mesh.vertex_count(), 0.01, 5));
+  EXPECT_NEAR(energy.value(mesh.positions), 0, 1e-20);
+  test::expect_elastic_energy_is_sound(energy, mesh.positions, x, 0.1);
+  const double stored = energy.value(x);
+  for (const std::array<int, 3>& order : {std::array{1, 2, 0}, {2, 1, 0}, {1, 0, 2}})
+    EXPECT_NEAR(bending(three_sheets(order), moduli).value(x), stored, 1e-9 * stored);
 }
 
 TEST(ShellBending, LargeSheetHasTheSameBitsForAnyThreadCount) {

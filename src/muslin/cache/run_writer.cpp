@@ -209,7 +209,7 @@ void RunWriter::Impl::start() {
   write_atomically(directory / "stats.json", statistics_json(model));
   write_atomically(directory / "selections.json", selections_json(model));
   for (const Component& body : model.bodies) {
-    write_mesh(directory / skin_files(body.name).mesh, body.mesh);
+    write_mesh(directory / skin_files(body.name).mesh, body.skin_mesh());
     for (const CachedPoints& points : body.cached_points())
       points.write_rest(directory / files_of(body, points).mesh);
   }
@@ -227,7 +227,7 @@ void RunWriter::Impl::open_files(int frames) {
     const auto open = [&](const std::string& name, std::size_t points) {
       return Pc2Writer(directory / name, points, mode, frames);
     };
-    caches.push_back({open(skin_files(body.name).cache, body.mesh.vertex_count()), {}});
+    caches.push_back({open(skin_files(body.name).cache, body.skin.size()), {}});
     for (const CachedPoints& points : body.cached_points()) {
       const std::size_t count =
           points.embedding ? points.embedding->size() : static_cast<std::size_t>(body.vertex_count);

@@ -27,6 +27,17 @@ bool caches_vertices(const Component& component) {
          });
 }
 
+/// Returns the points of the cache at vertices of the component, ascending.
+std::vector<int> cached(const Component& component, std::vector<int> vertices) {
+  if (!component.source || !component.is_mesh()) return vertices;
+  const std::vector<int>& of_point = component.source->vertices;
+  std::vector<int> points;
+  for (std::size_t p = 0; p < of_point.size(); ++p)
+    if (std::binary_search(vertices.begin(), vertices.end(), of_point[p]))
+      points.push_back(static_cast<int>(p));
+  return points;
+}
+
 /// Errors: any exception of Json, and std::out_of_range.
 Chosen parsed(const Json& entry, const std::vector<std::string>& bodies,
               const std::vector<std::size_t>& points) {
@@ -54,6 +65,7 @@ Selections selections_of(const Model& model) {
     if (!caches_vertices(body)) continue;  // such as those that carry a rigid body
     Chosen chosen{pin.name, model.bodies.index_of(body), {}, pin.from, pin.until, -1};
     for (const int v : pin.vertices) chosen.vertices.push_back(v - body.first_vertex);
+    chosen.vertices = cached(body, std::move(chosen.vertices));
     selections.pins.push_back(std::move(chosen));
   }
   for (std::size_t f = 0; f < model.scene.forces.size(); ++f) {
@@ -61,9 +73,10 @@ Selections selections_of(const Model& model) {
     if (!force.where) continue;
     const Component& body = model.body(force.body);
     if (body.selects_vertices() != caches_vertices(body)) continue;
-    selections.point_forces.push_back({force.name, model.bodies.index_of(body),
-                                       select_vertices(body, *force.where, "force " + force.name), force.from,
-                                       force.until, static_cast<int>(f)});
+    selections.point_forces.push_back(
+        {force.name, model.bodies.index_of(body),
+         cached(body, select_vertices(body, *force.where, "force " + force.name)), force.from, force.until,
+         static_cast<int>(f)});
   }
   return selections;
 }

@@ -25,6 +25,8 @@ class MapReader {
 
   std::vector<double> weights() const {
     std::vector<double> weights = values();
+    if (component_.source && weights.size() == component_.source->vertices.size())
+      weights = of_origins(weights);
     const std::size_t count = component_.mesh.vertex_count();
     if (weights.size() != count)
       refuse(fmt::format("has {} numbers, but the mesh of body `{}` has {} vertices", weights.size(),
@@ -55,6 +57,13 @@ class MapReader {
                   fmt::format("the map `{}`:{} {}", variation_.map, line, error.problem()),
                   error.kind() == ErrorKind::input && remedy != nullptr ? remedy : error.remedy());
     }
+  }
+
+  /// The numbers of the vertices that are left of those of the file.
+  std::vector<double> of_origins(const std::vector<double>& of_file) const {
+    std::vector<double> left;
+    for (const int v : component_.source->origins) left.push_back(of_file[static_cast<std::size_t>(v)]);
+    return left;
   }
 
   std::vector<double> values() const {

@@ -21,6 +21,7 @@ struct BodySettings {
   Vec3 translate = Vec3::Zero();  ///< [m]
   Vec3 rotate = Vec3::Zero();     ///< Euler angles about x, then y, then z [degrees]
   Vec3 scale = Vec3::Ones();
+  std::optional<double> weld;      ///< joins vertices nearer than this [m]
   Vec3 velocity = Vec3::Zero();    ///< initial [m/s]
   bool contact = true;             ///< touches other bodies, colliders and itself
   bool self_contact = true;        ///< touches itself

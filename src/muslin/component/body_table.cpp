@@ -19,6 +19,12 @@ std::vector<schema::Key> placed_keys() {
           .unit("degrees")
           .means("angles about the x axis, then y, then z"),
       scale_key(&BodySettings::scale),
+      schema::number("weld", &BodySettings::weld)
+          .unit("m")
+          .range({0, 1, true})
+          .otherwise("none are joined")
+          .means("joins vertices of the mesh that lie nearer than this, after `scale`; files that are "
+                 "written keep all vertices"),
       schema::vector("velocity", &BodySettings::velocity).unit("m/s").means("velocity at the start"),
       schema::truth("contact", &BodySettings::contact).means("`false` excludes the body from contact"),
       schema::truth("self_contact", &BodySettings::self_contact)

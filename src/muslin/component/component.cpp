@@ -100,7 +100,7 @@ std::uint64_t Component::range_hash(std::uint64_t seed, std::int64_t springs) co
 std::uint64_t Component::shape_hash(std::uint64_t seed) const { return range_hash(seed, 0); }
 
 void Component::write_stages(const std::filesystem::path& folder, const Progress& /*progress*/) const {
-  write_mesh(folder / (name + ".skin.obj"), mesh);
+  write_mesh(folder / (name + ".skin.obj"), skin_mesh());
 }
 
 std::string Component::description_json() const {
@@ -120,6 +120,20 @@ Embedding identity_embedding(std::size_t count) {
     embedding.weights.push_back({1});
   }
   embedding.prepare_transpose(count);
+  return embedding;
+}
+
+Embedding embed_source(const Component::Source& source) {
+  Embedding embedding;
+  const std::size_t count = source.vertices.size();
+  embedding.offsets.assign(count, Vec3::Zero());
+  for (std::size_t p = 0; p < count; ++p) {
+    const int v = source.vertices[p];
+    embedding.vertices.emplace_back().fill(std::max(v, 0));
+    embedding.weights.push_back({v < 0 ? 0.0 : 1.0});
+    if (v < 0) embedding.offsets[p] = source.mesh.positions[p];
+  }
+  embedding.prepare_transpose(source.origins.size());
   return embedding;
 }
 

@@ -81,10 +81,17 @@ struct Appearance {
 class MUSLIN_API Component {
  public:
   std::string name;
-  Mesh mesh;           ///< the user's mesh, placed in the world; the skin's polygons, UVs and rest positions
+  Mesh mesh;           ///< the user's mesh, placed in the world, of which `weld` has joined vertices
   MeshReport report;   ///< of mesh
   bool sheet = false;  ///< thin: the surface has two sides, no inside
-  Embedding skin;      ///< of mesh.positions
+  /// The mesh with the vertices of its file, where `mesh` has others, and how they belong to those of `mesh`.
+  struct Source {
+    Mesh mesh;
+    std::vector<int> vertices;  ///< #V of the file: its vertex in Component::mesh; −1 if that was left out
+    std::vector<int> origins;   ///< #V of Component::mesh: the first vertex of the file
+  };
+  std::optional<Source> source;
+  Embedding skin;        ///< of skin_mesh().positions
   int first_vertex = 0;  ///< its vertices are first_vertex … first_vertex + vertex_count − 1 of the state
   int vertex_count = 0;
   BodyStatistics statistics;
@@ -94,6 +101,9 @@ class MUSLIN_API Component {
   /// list in this order.
   std::vector<PotentialTerm> potentials;
   std::vector<LoadTerm> loads;
+
+  /// Returns the mesh that output shows: the skin's polygons, UVs and rest positions.
+  const Mesh& skin_mesh() const { return source ? source->mesh : mesh; }
 
   Component() = default;
   Component(const Component&) = delete;
@@ -188,6 +198,8 @@ class MUSLIN_API Component {
 
 /// Returns the embedding whose points are the vertices: J = 1. Prepared for the transpose.
 MUSLIN_API Embedding identity_embedding(std::size_t count);
+/// Returns the embedding of the vertices of a file in those of the mesh; vertices that were left out stay.
+Embedding embed_source(const Component::Source& source);
 
 /// Fills in statistics.mass, the sum of masses() in their order.
 MUSLIN_API void weigh(Component& component);

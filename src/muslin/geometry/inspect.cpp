@@ -11,6 +11,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/core/parallel.hpp"
+#include "muslin/geometry/weld.hpp"
 
 namespace muslin {
 namespace {
@@ -172,10 +173,17 @@ void measure(const Mesh& mesh, const Triangulation& cut, MeshReport& report) {
       });
 }
 
-void warn(MeshReport& report) {
+/// A tolerance of one digit that joins vertices at this distance.
+double joining(double distance, double size) {
+  const double least = std::max(1.5 * distance, 1e-6 * size);
+  const double digit = std::pow(10, std::floor(std::log10(least)));
+  return std::ceil(least / digit) * digit;
+}
+
+void warn(MeshReport& report, bool cloth) {
   const auto say = [&](std::string sentence) { report.warnings.push_back(std::move(sentence)); };
   const double size = report.bounds.sizes().maxCoeff();
-  if (size > 200 || size < 1e-3)
+  if (size > largest_mesh || size < 1e-3)
     say(fmt::format("The mesh is {:.3g} m across; if its file is in other units than metres, scale it.",
                     size));
   if (report.degenerate_faces > 0)
@@ -184,7 +192,7 @@ void warn(MeshReport& report) {
   if (report.duplicate_faces > 0)
     say(counted(report.duplicate_faces, "face repeats", "faces repeat") +
         " the vertices of another; remove doubled faces.");
-  if (report.non_manifold_edges > 0)
+  if (report.non_manifold_edges > 0 && !cloth)
     say(counted(report.non_manifold_edges, "edge is", "edges are") +
         " shared by three or more faces; inside and outside are guessed there: split or remove the extra "
         "faces.");
@@ -193,14 +201,18 @@ void warn(MeshReport& report) {
         "; recalculate the normals.");
   if (report.closed && report.flipped_edges == 0 && report.non_manifold_edges == 0 && report.volume < 0)
     say("The faces of the closed mesh point inward; flip the normals.");
+  if (report.near_border_vertices > 1)
+    say(fmt::format(
+        "{} vertices on borders lie within {:.2g} m of others but are not joined, so that the borders "
+        "come apart ({}); `weld = {:.1g}` joins them.",
+        report.near_border_vertices, report.near_border_distance,
+        counted(report.components, "piece", "pieces"), joining(report.near_border_distance, size)));
   if (report.unused_vertices > 0)
     say(counted(report.unused_vertices, "vertex belongs", "vertices belong") +
         " to no face; they are kept but not simulated: delete loose vertices.");
 }
 
-}  // namespace
-
-MeshReport inspect(const Mesh& mesh) {
+MeshReport report_of(const Mesh& mesh, bool cloth) {
   MeshReport report;
   report.vertices = mesh.vertex_count();
   report.faces = mesh.face_count();
@@ -220,12 +232,21 @@ MeshReport inspect(const Mesh& mesh) {
   count_duplicates(mesh, report);
   measure(mesh, cut, report);
   report.closed = report.open_edges == 0;
+  const NearBorders near = near_borders(mesh);
+  report.near_border_vertices = near.vertices;
+  report.near_border_distance = near.distance;
   int thinnest = 0;
   if (report.bounds.sizes().minCoeff(&thinnest) <= 1e-9 * report.bounds.diagonal().norm())
     report.flat_axis = thinnest;
-  warn(report);
+  warn(report, cloth);
   return report;
 }
+
+}  // namespace
+
+MeshReport inspect(const Mesh& mesh) { return report_of(mesh, false); }
+
+MeshReport inspect_cloth(const Mesh& mesh) { return report_of(mesh, true); }
 
 void require_usable(const Mesh& mesh, const std::string& file) {
   const auto refuse = [&](const std::string& problem, const std::string& remedy) {

@@ -17,6 +17,8 @@ struct MeshReport {
   std::size_t flipped_edges = 0;       ///< used twice in the same direction
   std::size_t degenerate_faces = 0;    ///< zero area
   std::size_t duplicate_faces = 0, unused_vertices = 0;
+  std::size_t near_border_vertices = 0;  ///< nearly at another one of a border, without being joined
+  double near_border_distance = 0;       ///< at most so far from it [m]
   double area = 0;    ///< [m²]
   double volume = 0;  ///< enclosed, signed [m³]; meaningful if closed
   Box bounds;
@@ -28,7 +30,11 @@ struct MeshReport {
 /// Works for any mesh; if an index or a position is invalid, only the counts of vertices and faces and that
 /// warning are filled in. Components are joined by shared vertices.
 MUSLIN_API MeshReport inspect(const Mesh& mesh);
+/// As inspect, for thin cloth: edges of three and more faces are seams and give no warning.
+MUSLIN_API MeshReport inspect_cloth(const Mesh& mesh);
 
+/// Larger meshes [m] get a warning about units.
+inline constexpr double largest_mesh = 200;
 /// Coordinates beyond this [m] are refused, since the file must be broken.
 inline constexpr double largest_coordinate = 1e9;
 

@@ -77,7 +77,7 @@ void Embedding::apply(ConstVectors q, Vectors points) const {
     for (std::size_t p = begin; p < end; ++p) {
       Vec3 sum = Vec3::Zero();
       for (std::size_t c = 0; c < 8; ++c) sum += weights[p][c] * q[vertices[p][c]];
-      points[p] = sum;
+      points[p] = offsets.empty() ? sum : sum + offsets[p];
     }
   });
 }

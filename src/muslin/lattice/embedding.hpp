@@ -1,4 +1,5 @@
-// Embedding maps lattice vertices linearly to the points they carry, x = J q.
+// Embedding maps lattice vertices linearly to the points they carry, x = J q; points that nothing carries
+// have an offset.
 #pragma once
 
 #include <array>
@@ -12,13 +13,15 @@
 
 namespace muslin {
 
-/// Each point is a weighted sum of at most eight lattice vertices; the weights of a point add up to 1.
+/// Each point is a weighted sum of at most eight lattice vertices; the weights of a point add up to 1, or
+/// are 0 if nothing carries it.
 struct MUSLIN_API Embedding {
   std::vector<std::array<int, 8>> vertices;    ///< #P; unused slots repeat a vertex with weight 0
   std::vector<std::array<double, 8>> weights;  ///< #P
+  std::vector<Vec3> offsets{};                 ///< #P, added to the points [m]; empty: none
 
   std::size_t size() const { return vertices.size(); }
-  /// points = J q; q is #V by 3, points #P by 3.
+  /// points = J q + offsets; q is #V by 3, points #P by 3.
   void apply(ConstVectors q, Vectors points) const;
   /// forces_q += Jᵀ f. The sums run over the points in ascending order, so the bits do not depend on the
   /// number of threads. Runs in parallel after prepare_transpose().

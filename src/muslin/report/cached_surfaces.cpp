@@ -10,6 +10,7 @@
 #include "muslin/core/error.hpp"
 #include "muslin/core/index.hpp"
 #include "muslin/geometry/mesh.hpp"
+#include "muslin/geometry/weld.hpp"
 
 namespace muslin {
 namespace {
@@ -73,6 +74,7 @@ CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record
     const Mesh& skin = run.mesh(place, SurfaceKind::skin);
     const auto owner = static_cast<int>(bodies.size());
     std::vector<Vec3> rest = skin.positions;
+    origins_.emplace_back();
     if (!body.axis.empty()) {
       rest = body.axis;
       const int last = first + static_cast<int>(rest.size()) - 1;
@@ -86,11 +88,16 @@ CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record
       plane.span = {first + 1, first + 2};
       planes.push_back(plane);
     } else {
-      if (body.points != rest.size())
+      // A mesh that was welded, or had loose vertices, has more points in the caches.
+      ReducedMesh surface{skin, {}, {}};
+      if (body.points != rest.size()) surface = weld(skin, 0);
+      if (body.points != surface.mesh.vertex_count())
         throw Error(ErrorKind::input, {run.directory().string()},
                     "the surface with which \"" + body.name + "\" touches others is not in the caches",
                     "only skins can be examined");
-      const Triangulation cut = triangulate(skin);
+      rest = surface.mesh.positions;
+      origins_.back() = std::move(surface.origins);
+      const Triangulation cut = triangulate(surface.mesh);
       for (const Vec3i& triangle : cut.triangles) triangles.emplace_back(triangle + Vec3i::Constant(first));
       contact_.faces.insert(contact_.faces.end(), cut.faces.begin(), cut.faces.end());
     }
@@ -128,7 +135,8 @@ std::vector<Vec3> CachedSurfaces::points(int frame) const {
       const std::array<Vec3, 3> points = points_of_plane(skin);
       all.insert(all.end(), points.begin(), points.end());
     } else if (bodies_[b].axis.empty()) {
-      all.insert(all.end(), skin.begin(), skin.end());
+      if (origins_[b].empty()) all.insert(all.end(), skin.begin(), skin.end());
+      for (const int point : origins_[b]) all.push_back(skin[at(point)]);
     } else {
       const Placement moved(run_.mesh(places_[b], SurfaceKind::skin).positions, skin);
       for (const Vec3& point : bodies_[b].axis) all.push_back(moved(point));

@@ -47,6 +47,7 @@ class CachedSurfaces {
 
   const RunReader& run_;
   std::vector<ContactRecord::Body> bodies_;
+  std::vector<std::vector<int>> origins_;  // the points of the caches, where not all are of the surface
   std::vector<int> places_;  ///< #bodies_, in the run
   ContactModel contact_;
 };

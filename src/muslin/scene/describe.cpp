@@ -243,6 +243,8 @@ std::string describe_json(const MeshReport& r, const std::string& file) {
   json["degenerate_faces"] = r.degenerate_faces;
   json["duplicate_faces"] = r.duplicate_faces;
   json["unused_vertices"] = r.unused_vertices;
+  json["near_border_vertices"] = r.near_border_vertices;
+  json["near_border_distance"] = r.near_border_distance;
   json["area"] = r.area;
   json["volume"] = r.volume;
   json["closed"] = r.closed;

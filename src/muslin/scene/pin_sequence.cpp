@@ -55,10 +55,11 @@ void follow_sequence(const Scene& scene, const PinSettings& settings, const Comp
     throw Error(error.kind(), settings.sequence_place, file.string() + ": " + error.problem(),
                 error.remedy());
   }
-  if (sequence.points != body.mesh.vertex_count()) {
+  const std::size_t count = body.skin_mesh().vertex_count();
+  if (sequence.points != count) {
     throw Error(ErrorKind::input, settings.sequence_place,
                 fmt::format("{} moves {} points, the mesh of body `{}` has {} vertices", file.string(),
-                            sequence.points, body.name, body.mesh.vertex_count()),
+                            sequence.points, body.name, count),
                 "export the sequence from the same mesh");
   }
   const std::vector<int> among = body.is_mesh() ? std::vector<int>{} : leaders(body, settings.where);
@@ -66,9 +67,10 @@ void follow_sequence(const Scene& scene, const PinSettings& settings, const Comp
   parallel_for(pin.vertices.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const int local = pin.vertices[i] - body.first_vertex;
-      pin.points[i] = body.is_mesh() ? local
-                                     : nearest(body.rest_position(static_cast<std::size_t>(local)), among,
-                                               body.mesh.positions);
+      const int point = body.is_mesh() ? local
+                                       : nearest(body.rest_position(static_cast<std::size_t>(local)), among,
+                                                 body.mesh.positions);
+      pin.points[i] = body.source ? body.source->origins[static_cast<std::size_t>(point)] : point;
     }
   });
   pin.sequence = std::make_shared<const PointSequence>(std::move(sequence));

@@ -82,7 +82,7 @@ void add(Model& model, const ForceSettings& force) {
     for (auto& vertices : skin.vertices) {
       for (int& v : vertices) v += body.first_vertex;
     }
-    std::vector<Vec3i> triangles = triangulate(body.mesh).triangles;
+    std::vector<Vec3i> triangles = triangulate(body.skin_mesh()).triangles;
     if (!body.sheet && body.report.volume < 0) {
       for (Vec3i& triangle : triangles) std::swap(triangle[1], triangle[2]);
     }

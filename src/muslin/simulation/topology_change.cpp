@@ -124,6 +124,10 @@ void Simulation::cut(const std::string& body, std::span<const std::array<int, 2>
     throw Error(ErrorKind::usage,
                 fmt::format("\"{}\" is no shell of the scene, and only these can be cut", body),
                 "give the name of a [[body]] that is a shell");
+  if (before.source)
+    throw Error(ErrorKind::usage,
+                fmt::format("\"{}\" has other vertices than its file, which cannot be cut", body),
+                "join vertices and delete loose ones in the modeller, and leave out `weld`");
   std::vector<int> cut_origins;
   for (std::string* path : kind_of(*settings).cut_meshes(*settings))
     cut_origins = cut_mesh(scene, body, *path, edges);

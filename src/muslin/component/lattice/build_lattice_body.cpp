@@ -42,7 +42,7 @@ class LatticeBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    read_body_mesh(settings_, inputs_, body_);
+    read_body_mesh(settings_, inputs_, MeshUse::solid, body_);
     make_solid();
     at_place(settings_.place, inputs_.files.resolve(settings_.mesh).string(),
              [&] { fill(inputs_.progress); });
@@ -94,7 +94,7 @@ class LatticeBuilder {
     body_.springs = build_springs(body_.lattice, own_.bracing);
     body_.lattice.fill = fill;
     progress.at(0.8, "skin");
-    body_.skin = embed(body_.lattice, body_.mesh.positions);
+    body_.skin = embed(body_.lattice, body_.skin_mesh().positions);
     progress.at(0.9, "contour");
     const bool one_layer = body_.lattice.extent.minCoeff() == 1;
     body_.contour = build_contour(body_.lattice, body_.solid, distance,

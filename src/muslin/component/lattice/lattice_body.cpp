@@ -146,7 +146,7 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
                         (thin ? std::min(lattice.width, thickness) : lattice.width);
   // A body without stretch resistance still needs contact to carry its weight.
   if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;
-  part.add_mesh(mesh, cut, skin);
+  part.add_mesh(mesh, cut, source ? embed(lattice, mesh.positions) : skin);
   if (part.edge > 2 * lattice.width) {
     part.warning = fmt::format(
         "body {}: contact sees its mesh, whose edges of {:.3g} m do not bend as its voxels do; "

@@ -90,7 +90,7 @@ void LatticeBody::write_stages(const std::filesystem::path& folder, const Progre
   write_vtu(at("voxels.vtu"), filled);
   write_vtu(at("tets.vtu"), tetrahedra(lattice));
   write_vtu(at("springs.vtu"), spring_lines(springs, lattice));
-  write_mesh(at("skin.obj"), mesh);
+  write_mesh(at("skin.obj"), skin_mesh());
   write_mesh(at("solid.obj"), solid);
   write_mesh(at("contour.obj"), contour.mesh);
 }

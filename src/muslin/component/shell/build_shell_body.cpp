@@ -24,9 +24,9 @@
 namespace muslin {
 namespace {
 
-constexpr double largest_cloth = 20, largest_plausible = 200;  // [m]
-constexpr double folding_size = 8;                             // cloth of fewer edges has no folds
-constexpr double largest_ratio = 5;  // of lengths of rest shape and mesh that are in the same units
+constexpr double largest_cloth = 20;  // [m]
+constexpr double folding_size = 8;    // cloth of fewer edges has no folds
+constexpr double largest_ratio = 5;   // of lengths of rest shape and mesh that are in the same units
 
 class ShellBuilder {
  public:
@@ -39,7 +39,8 @@ class ShellBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    const std::vector<int> fabric_of_face = lay_fabrics(read_body_mesh(settings_, inputs_, body_));
+    const std::vector<int> fabric_of_face =
+        lay_fabrics(read_body_mesh(settings_, inputs_, MeshUse::cloth, body_));
     body_.maps = read_maps(own_.variations, shell_kind.keys(), inputs_.files, body_);
     const RestShape rest = rest_shape();
     at_place(settings_.mesh_place, file_, [&] { make_shell(rest); });
@@ -170,7 +171,7 @@ class ShellBuilder {
     warn_of_inverted_triangles(rest);
     warn_of_long_edges();
     warn_of_units();
-    body_.skin = identity_embedding(body_.mesh.vertex_count());
+    body_.skin = body_.source ? embed_source(*body_.source) : identity_embedding(body_.mesh.vertex_count());
     body_.vertex_count = static_cast<int>(body_.mesh.vertex_count());
     BodyStatistics& s = body_.statistics;
     s.vertices = body_.vertex_count;
@@ -270,10 +271,10 @@ class ShellBuilder {
         edge, body_.settings.material.name, trusted.unlocked));
   }
 
-  /// Sizes beyond `largest_plausible` are mentioned with the mesh.
+  /// Sizes beyond `largest_mesh` are mentioned with the mesh.
   void warn_of_units() {
     const double size = body_.mesh.bounds().sizes().maxCoeff();
-    if (size > largest_cloth && size <= largest_plausible)
+    if (size > largest_cloth && size <= largest_mesh)
       say(fmt::format("it is {:.3g} m across; if its mesh is in centimetres, set `scale = 0.01`", size));
   }
 

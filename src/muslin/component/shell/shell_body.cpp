@@ -210,7 +210,7 @@ std::optional<ContactPart> ShellBody::contact_part() const {
   part.body.stiffness = contact_stiffness_share * mean_modulus();
   // A body without stretch resistance still needs contact to carry its weight.
   if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;
-  part.add_mesh(mesh, cut, skin);
+  part.add_mesh(mesh, cut, source ? identity_embedding(mesh.vertex_count()) : skin);
   return part;
 }
 
@@ -249,7 +249,7 @@ std::uint64_t ShellBody::material_hash(std::uint64_t seed) const {
 
 void ShellBody::write_stages(const std::filesystem::path& folder, const Progress& /*progress*/) const {
   write_vtu(folder / (name + ".shell.vtu"), triangles(shell, mesh));
-  write_mesh(folder / (name + ".skin.obj"), mesh);
+  write_mesh(folder / (name + ".skin.obj"), skin_mesh());
 }
 
 std::string ShellBody::description_json() const {
@@ -259,6 +259,7 @@ std::string ShellBody::description_json() const {
   json["mesh"] = settings.mesh;
   json["model"] = kind();
   json["triangles"] = s.triangles;
+  json["pieces"] = report.components;
   json["hinges"] = s.hinges;
   json["area"] = shell.area;
   json["mean_edge"] = shell.mean_edge;
@@ -284,6 +285,10 @@ std::string ShellBody::description() const {
       fmt::format("body {}: {} ({}, shell)\n", name, settings.mesh, counted(mesh.face_count(), "polygon"));
   text += fmt::format("  shell       {} vertices, {} triangles, {} hinges, edges of {:.4g} m on average\n",
                       s.vertices, s.triangles, s.hinges, shell.mean_edge);
+  if (source)
+    text +=
+        fmt::format("  file        {} vertices, joined or loose ones included\n", source->vertices.size());
+  if (report.components > 1) text += fmt::format("  pieces      {} that are not joined\n", report.components);
   if (rest_differs(own())) {
     text += own().rest == RestSource::uv
                 ? fmt::format("  rest        the texture, {:.4g} m per unit", uv_scale)
