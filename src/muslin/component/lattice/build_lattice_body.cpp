@@ -11,6 +11,7 @@
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/component/changing_terms.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
+#include "muslin/component/lattice/shared_voxels.hpp"
 #include "muslin/component/solid.hpp"
 #include "muslin/component/stability_bound.hpp"
 #include "muslin/core/progress_part.hpp"
@@ -129,6 +130,12 @@ class LatticeBuilder {
           fmt::format("the sheet is {:.3g} voxels thick; a larger `voxel_width` or a smaller `thickness` is "
                       "cheaper",
                       body_.thickness / width));
+    }
+    if (const auto shared = find_shared_voxels(body_.solid, body_.lattice)) {
+      say(fmt::format(
+          "{} parts of its mesh are apart but share voxels, so they move as one, such as those of vertices "
+          "{} and {}, {:.2g} m apart; use a smaller `voxel_width`, or give each part a [[body]] of its own",
+          shared->parts, shared->vertices[0] + 1, shared->vertices[1] + 1, shared->distance));
     }
     if (body_.lattice.voxel_count() > many_voxels) {
       say(fmt::format("{} voxels take long and several GiB of memory; a larger `voxel_width` takes less",
