@@ -101,7 +101,7 @@ TEST(WeldBody, EdgeOfThreePolygonsOfAShellIsNoWarning) {
 TEST(WeldBody, GarmentInCentimetresIsAWarning) {
   EXPECT_THAT(
       build_model(scene(test::flat_sheet(4, 3, 60, 80), "")).warnings,
-      testing::Contains("body cloth: it is 80 m across; if its file is in centimetres, set `scale = 0.01`"));
+      testing::Contains("body cloth: it is 80 m across; if its mesh is in centimetres, set `scale = 0.01`"));
 }
 
 }  // namespace

@@ -114,8 +114,7 @@ schema::Table declare_shell() {
        schema::word("rest", &Own::rest, {"mesh", "uv"})
            .shown_if<Own>([](const Own& own) { return own.rest == RestSource::uv; })
            .means("`\"mesh\"`: the stress-free shape is that of `rest_mesh`, or else of the mesh · `\"uv\"`: "
-                  "the "
-                  "texture coordinates are the flat pattern"),
+                  "the texture coordinates are the flat pattern"),
        schema::number("uv_scale", &Own::uv_scale)
            .unit("m")
            .range({1e-6, 1e6, false})
