@@ -42,16 +42,6 @@ RegionSphere = TypedDict(
     total=False,
 )
 
-KeyframesOfANumber = TypedDict(
-    "KeyframesOfANumber",
-    {
-        "time": Required[float],  # time of the keyframe, later than the previous one [s]
-        "value": Required[float],  # the number at that time
-        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
-    },
-    total=False,
-)
-
 WhereLine = TypedDict(
     "WhereLine",
     {
@@ -81,16 +71,21 @@ WhereSphere = TypedDict(
     total=False,
 )
 
-ANumberThatVaries = TypedDict(
-    "ANumberThatVaries",
+ASideOfBetween = TypedDict(
+    "ASideOfBetween",
     {
-        "map": Optional[str],  # where it varies: an attribute or group of the mesh, or a file of numbers
-        "from": Optional[float],  # the number where the map has its `lowest` value
-        "to": Optional[float],  # the number where the map has its `highest` value
-        "lowest": Optional[float],  # value of the map that stands for `from`
-        "highest": Optional[float],  # value of the map that stands for `to`
-        "curve": Optional[Points],  # points `[[weight, share], …]` between 0 and 1: the number goes from `from` to `to` by the share
-        "keyframes": Optional[Sequence["KeyframesOfANumber"]],  # when it varies: constant before the first and after the last
+        "body": Required[str],  # a body or collider
+        "group": Optional[str],  # a group of vertices or faces of its mesh; an edge or triangle belongs to it if any of its corners does
+    },
+    total=False,
+)
+
+KeyframesOfANumber = TypedDict(
+    "KeyframesOfANumber",
+    {
+        "time": Required[float],  # time of the keyframe, later than the previous one [s]
+        "value": Required[float],  # the number at that time
+        "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
     },
     total=False,
 )
@@ -178,12 +173,27 @@ Where = TypedDict(
     total=False,
 )
 
+ContactPair = TypedDict(
+    "ContactPair",
+    {
+        "between": Required[Sequence[Union[str, "ASideOfBetween"]]],  # two bodies or colliders by name, twice the same one for a body with itself; `{ body = …, group = … }` in place of a name takes only a group of its vertices
+        "contact": Optional[bool],  # `false`: the two pass through each other · `true`: they meet, though an earlier pair says that they do not
+        "thickness": Optional[float],  # distance of their midsurfaces when they touch; balls and capsules add their radius [m]
+        "distance": Optional[float],  # contact distance: they repel each other where the gap is below it [m]
+        "friction": Optional[float],  # Coulomb's coefficient between them
+        "stiffness": Optional[float],  # stiffness of a contact between them [N/m]
+        "from": Optional[float],  # time from which the pair is in force [s]
+        "until": Optional[float],  # time when it ends, after `from` [s]
+    },
+    total=False,
+)
+
 KeyframesOfAMotion = TypedDict(
     "KeyframesOfAMotion",
     {
         "time": Required[float],  # time of the keyframe, later than the previous one [s]
         "translate": Optional[Vector],  # displacement [m]
-        "rotate": Optional[Vector],  # rotation about `pivot`: about the x axis, then y, then z [degrees]
+        "rotate": Optional[Vector],  # rotation about `pivot`: about the x axis, then y, then z; 360 is a full turn [degrees]
         "scale": Optional[Union[float, Vector]],  # of pins: scale about `pivot`, a number or one per axis; applied first
         "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots
     },
@@ -213,10 +223,35 @@ MaterialOfAShell = TypedDict(
         "yield_curvature": Optional[float],  # curvature of bent warp beyond which the sheet keeps a crease: released, it stays bent by what is above it [1/m]
         "yield_hardening": Optional[float],  # stiffness beyond yield over that below
         "yield_recovery": Optional[float],  # time in which creases fade to 37 % of themselves, as under an iron [s]
+        "yield_strain": Optional[float],  # strain of a strip pulled along a thread beyond which the thread stays longer, as a knee bags: released, it keeps what is above it; needs `compression = "elastic"`
+        "strain_hardening": Optional[float],  # stiffness of stretch beyond yield over that below
         "stretch_limit": Optional[Union[float, "ANumberThatVaries"]],  # largest stretch in any direction, as length over rest length, unless the body has a `stretch_limit` of its own
         "mass_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's α: slows all motion [1/s]
         "stiffness_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's β of stretch and shear [s]
         "bending_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's β of bending [s]
+    },
+    total=False,
+)
+
+BodyFabric = TypedDict(
+    "BodyFabric",
+    {
+        "faces": Required[str],  # a face group of the mesh (OBJ `g`), or a material of its file (`usemtl` of OBJ, materials of glTF)
+        "material": Required[Union[str, "MaterialOfAShell"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
+    },
+    total=False,
+)
+
+ANumberThatVaries = TypedDict(
+    "ANumberThatVaries",
+    {
+        "map": Optional[str],  # where it varies: an attribute or group of the mesh, or a file of numbers
+        "from": Optional[float],  # the number where the map has its `lowest` value
+        "to": Optional[float],  # the number where the map has its `highest` value
+        "lowest": Optional[float],  # value of the map that stands for `from`
+        "highest": Optional[float],  # value of the map that stands for `to`
+        "curve": Optional[Points],  # points `[[weight, share], …]` between 0 and 1: the number goes from `from` to `to` by the share
+        "keyframes": Optional[Sequence["KeyframesOfANumber"]],  # when it varies: constant before the first and after the last
     },
     total=False,
 )
@@ -231,6 +266,8 @@ MaterialOfALattice = TypedDict(
         "face_diagonal_modulus": Optional[Union[float, "ANumberThatVaries"]],  # modulus of springs along face diagonals [N/m²]
         "body_diagonal_modulus": Optional[Union[float, "ANumberThatVaries"]],  # modulus of springs along body diagonals [N/m²]
         "volume_modulus": Optional[Union[float, "ANumberThatVaries"]],  # resistance of each voxel to a change of volume; 0 is off [N/m²]
+        "yield_strain": Optional[float],  # of springs: strain, in stretch or compression, beyond which a spring keeps another length: released, it keeps what is above it
+        "strain_hardening": Optional[float],  # stiffness beyond yield over that below
         "mass_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's α: slows all motion, like a viscous fluid [1/s]
         "stiffness_damping": Optional[Union[float, "ANumberThatVaries"]],  # Rayleigh's β: damps stretching only [s]
         "law": Optional[Literal["springs", "neo_hookean"]],  # `neo_hookean`: a solid of tetrahedra in place of springs, with a stated E and ν
@@ -500,9 +537,11 @@ Pin = TypedDict(
         "stiffness": Optional[float],  # of the whole pin, which is then soft: springs pull its vertices to their targets; each has a share by its mass [N/m]
         "time": Optional[float],  # in place of `stiffness`: time in which a critically damped soft pin brings its body to the target [s]
         "damping": Optional[float],  # of the whole pin, against motion relative to the target [N·s/m]
+        "weight": Optional[Union[float, "ANumberThatVaries"]],  # of a soft pin at each vertex, as a factor of stiffness and damping; where it is 0 the vertex is free
         "pivot": Optional[Vector],  # point about which `rotate` turns and `scale` scales [m]
         "sequence": Optional[Path],  # motion, in place of `keyframes`: a file with the position of every vertex of the body's mesh per frame: `.pc2`, `.mdd`, or numbered files `walk.####.obj`. Metres, y up, in the world
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion: a list of tables; times ascend
+        "ignore": Optional[Sequence[str]],  # bodies and colliders that the held vertices, with the edges and triangles at them, pass through while the pin holds
     },
     total=False,
 )
@@ -512,6 +551,8 @@ Contact = TypedDict(
     {
         "distance": Optional[float],  # contact distance: surfaces repel each other where the gap is below it [m]
         "friction": Optional[float],  # Coulomb's coefficient of each body and collider without its own `friction`
+        "tangled": Optional[Literal["refuse", "repair", "ignore"]],  # a start at which surfaces cross: `"refuse"` it · `"repair"` it before the first frame · `"ignore"`: leave them free of each other until they part
+        "pair": Optional[Sequence["ContactPair"]],  # how two of them meet, in place of what they say of themselves
     },
     total=False,
 )
@@ -527,6 +568,7 @@ PlaneCollider = TypedDict(
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -546,6 +588,7 @@ SphereCollider = TypedDict(
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -565,6 +608,7 @@ CapsuleCollider = TypedDict(
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -585,6 +629,7 @@ BoxCollider = TypedDict(
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -609,6 +654,7 @@ MeshCollider = TypedDict(
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
     total=False,
@@ -622,6 +668,7 @@ LatticeBody = TypedDict(
         "name": Optional[str],  # used in file names, messages and by pins; different for each body
         "mesh": Required[Path],  # `.obj`, `.ply`, `.stl`, `.gltf`, `.glb`, `.dae` or `.fbx`
         "model": Optional[Literal["lattice"]],  # `"lattice"`: voxels with springs, filled into the mesh · `"shell"`: the mesh itself as [thin cloth](shells.md)
+        "inside": Optional[Literal["auto", "filled", "sheet"]],  # `"auto"`: a mesh that is closed, or has small holes only, is a solid, any other a sheet · `"filled"`: a solid, wherever the winding number of the mesh is above one half, however large its holes · `"sheet"`: a sheet, though the mesh is closed
         "thickness": Optional[float],  # thickness of a lattice that is a sheet: an open mesh, or one that encloses nothing. An open mesh with small holes is filled as a solid unless `thickness` is given [m]
         "voxel_width": Required[float],  # edge of a voxel: halving it doubles the detail and takes at least eight times as long for a solid, four times for a sheet [m]
         "voxels": Optional[Literal["cover", "threshold"]],  # `"cover"`: every voxel that meets the solid · `"threshold"`: every voxel whose centre has a signed distance below `threshold`
@@ -633,10 +680,12 @@ LatticeBody = TypedDict(
         "translate": Optional[Vector],  # displacement, applied last [m]
         "rotate": Optional[Vector],  # angles about the x axis, then y, then z [degrees]
         "scale": Optional[Union[float, Vector]],  # a number or one per axis; applied first
+        "weld": Optional[float],  # joins vertices of the mesh that lie nearer than this, after `scale`; files that are written keep all vertices [m]
         "velocity": Optional[Vector],  # velocity at the start [m/s]
         "contact": Optional[bool],  # `false` excludes the body from contact
         "self_contact": Optional[bool],  # `false` excludes contact of the body with itself
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour of the body in pictures: red, green, blue [sRGB 0 to 1]
     },
     total=False,
@@ -649,20 +698,26 @@ ShellBody = TypedDict(
         "mesh": Required[Path],  # `.obj`, `.ply`, `.stl`, `.gltf`, `.glb`, `.dae` or `.fbx`
         "model": Required[Literal["shell"]],  # `"lattice"`: voxels with springs, filled into the mesh · `"shell"`: the mesh itself as [thin cloth](shells.md)
         "thickness": Optional[float],  # thickness in contact [m]
-        "rest_mesh": Optional[Path],  # a mesh with the same polygons in the stress-free shape; `scale` applies to it
-        "rest_scale_warp": Optional[float],  # stress-free length along warp over that of the mesh: below 1 the cloth shrinks
-        "rest_scale_weft": Optional[float],  # stress-free length along weft over that of the mesh
+        "rest_mesh": Optional[Path],  # a mesh with the same polygons in the stress-free shape, cut along seams or not; `scale` applies to it
+        "rest": Optional[Literal["mesh", "uv"]],  # `"mesh"`: the stress-free shape is that of `rest_mesh`, or else of the mesh · `"uv"`: the texture coordinates are the flat pattern
+        "uv_scale": Optional[float],  # length of one unit of the texture, only with `rest = "uv"` [m]
+        "rest_scale_warp": Optional[Union[float, "ANumberThatVaries"]],  # stress-free length along warp over that of the mesh: below 1 the cloth shrinks
+        "rest_scale_weft": Optional[Union[float, "ANumberThatVaries"]],  # stress-free length along weft over that of the mesh
+        "rest_scale_share": Optional[Union[float, "ANumberThatVaries"]],  # share of the change to `rest_scale_warp` and `rest_scale_weft` that has come about: from 0 to 1 over time the cloth dries
         "warp": Optional[Vector],  # direction of the warp threads in the mesh as modelled
         "compression": Optional[Literal["buckling", "elastic"]],  # how threads resist compression: `buckling`, up to the load at which cells of the mesh fold; `elastic`, as they resist tension
         "stretch_limit": Optional[float],  # largest stretch of a triangle in any direction, as length over rest length; 1.05 allows 5 %
+        "fabric": Optional[Sequence["BodyFabric"]],  # fabrics of some faces; the others have `material`
         "material": Required[Union[str, "MaterialOfAShell"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
         "translate": Optional[Vector],  # displacement, applied last [m]
         "rotate": Optional[Vector],  # angles about the x axis, then y, then z [degrees]
         "scale": Optional[Union[float, Vector]],  # a number or one per axis; applied first
+        "weld": Optional[float],  # joins vertices of the mesh that lie nearer than this, after `scale`; files that are written keep all vertices [m]
         "velocity": Optional[Vector],  # velocity at the start [m/s]
         "contact": Optional[bool],  # `false` excludes the body from contact
         "self_contact": Optional[bool],  # `false` excludes contact of the body with itself
         "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour of the body in pictures: red, green, blue [sRGB 0 to 1]
     },
     total=False,
