@@ -25,6 +25,7 @@ set(MUSLIN_PUBLIC_HEADERS
     constraint/attachment_force.hpp
     constraint/pin.hpp
     constraint/prescribed.hpp
+    contact/contact_rules.hpp
     contact/contact_surface.hpp
     contact/surface_map.hpp
     core/error.hpp

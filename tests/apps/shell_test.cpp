@@ -100,8 +100,9 @@ TEST(ShellRun, UnweldedMeshesAreReported) {
                     "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0.2 -1 0.2\nv 0.2 1 0.2\nv 0.3 1 0.3\nf 1 2 3\nf 4 5 6\n");
   for (const auto& [mesh, advice] : {std::pair("torn.obj", "merge vertices of a mesh that lie at one place"),
                                      std::pair("flap.obj", "self_contact = false")}) {
-    test::write_bytes(scratch / "scene.toml", std::string("[contact]\n[[body]]\nmesh = \"") + mesh +
-                                                  "\"\nmodel = \"shell\"\nmaterial = \"cotton\"\n");
+    test::write_bytes(scratch / "scene.toml",
+                      std::string("[contact]\ntangled = \"refuse\"\n[[body]]\nmesh = \"") + mesh +
+                          "\"\nmodel = \"shell\"\nmaterial = \"cotton\"\n");
     for (const auto& command : {words(scratch, "run", 1), {"check", (scratch / "scene.toml").string()}}) {
       const auto outcome = run(scratch, command);
       EXPECT_EQ(outcome.code, 3) << command[0];

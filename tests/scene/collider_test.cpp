@@ -138,7 +138,7 @@ scale = 2
   const auto json = nlohmann::json::parse(scene.resolved);
   EXPECT_EQ(json["collider"][0]["keyframes"][1]["translate"][1], 1);
   EXPECT_EQ(json["collider"][1]["angular_velocity"][2], 90);
-  EXPECT_EQ(json["contact"], nlohmann::json({{"distance", 0.003}, {"friction", 0.4}}));
+  EXPECT_EQ(json["contact"], nlohmann::json({{"distance", 0.003}, {"friction", 0.4}, {"tangled", "repair"}}));
 }
 
 TEST_F(ColliderModel, FrictionDefaultsToThatOfTheScene) {

@@ -148,7 +148,9 @@ TEST(ContactRun, RefusesAStartThatCrosses) {
   for (Vec3& p : upright.positions) p = Vec3(p.x() + 0.03, p.z() - 0.23, 0.24);
   scene.add_cloth(flat);
   scene.add_cloth(upright);
-  const auto model = scene.finish();
+  Model strict = *scene.finish();
+  strict.scene.contact.tangled = TangledStart::refuse;
+  const auto model = std::make_shared<const Model>(std::move(strict));
   EXPECT_FALSE(find_crossings(*model->contact, model->rest_positions).empty());
   try {
     const Simulation simulation(model);

@@ -78,8 +78,13 @@ void Simulation::Impl::begin_contact(const Progress& progress) {
   if (options.resumes) return touch(true);
   if (tangled_start() == TangledStart::refuse)
     refuse_crossings(*model->contact, x, state.motion.time, {model->scene.file.string()});
-  if (tangled_start() == TangledStart::repair)
+  if (tangled_start() == TangledStart::repair) {
+    const std::vector<Vec3> start = x;
     untangled = untangle(*model, terms(), state, scratch, progress);
+    // A thickness of kilometres is a mistake, not a tangle.
+    if (vertex_out_of_range(x) >= 0)
+      refuse_crossings(*model->contact, start, state.motion.time, {model->scene.file.string()});
+  }
   touch(tangled_start() == TangledStart::ignore || untangled.left > 0);
 }
 

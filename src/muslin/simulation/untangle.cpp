@@ -23,7 +23,7 @@ constexpr int most_steps = 240;           // four seconds
 constexpr int patience = 30, stuck_after = 3;
 constexpr double shallower = 0.98;
 /// The same if nothing crosses and only gaps are small: contact can go on from there.
-constexpr int patience_if_close = 4;
+constexpr int patience_if_close = 12;
 constexpr double accuracy = 0.05;  // of a step, over the separations
 constexpr std::size_t listed = 4;
 
