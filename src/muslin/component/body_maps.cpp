@@ -68,7 +68,7 @@ class MapReader {
 
   std::vector<double> values() const {
     if (is_number_file(variation_.map))
-      return in_file([this](const auto& path) { return read_numbers(path); },
+      return in_file([](const auto& path) { return read_numbers(path); },
                      "give one finite number for each vertex, a line each in .csv");
     if (is_image_file(variation_.map))
       return from_image(in_file([](const auto& path) { return read_grey_image(path); }, nullptr));

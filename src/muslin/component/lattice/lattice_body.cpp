@@ -1,3 +1,4 @@
+#include "muslin/core/hash.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
 
 #include <algorithm>

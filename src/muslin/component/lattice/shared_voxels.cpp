@@ -31,6 +31,7 @@ std::vector<int> parts_of_lattice(const Mesh& mesh, const Lattice& lattice) {
     for (const int v : corners) parts.join(corners[0], v);
   const Embedding embedding = embed(lattice, mesh.positions);
   std::vector<int> result;
+  result.reserve(embedding.vertices.size());
   for (const auto& carriers : embedding.vertices) result.push_back(parts.find(carriers[0]));
   return result;
 }
