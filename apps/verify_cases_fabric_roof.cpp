@@ -20,7 +20,7 @@ std::string slow_steps(double step) {
       1 / step);
 }
 
-/// What rods hang from.
+/// The place that rods hang from.
 const std::string frame =
     "[[collider]]\nname = \"frame\"\nshape = \"box\"\nsize = [1, 1, 1]\ncenter = [0, 0, 900]\n";
 

@@ -52,21 +52,7 @@ translate = [0, 0.3, 0]
 
 std::vector<Comparison> ball_on_held_cloth() {
   const Experiment experiment;
-  experiment.level_sheet("cloth.obj", 1, 1, 16);
-  Simulation simulation = experiment.start(R"(
-[[body]]
-name = "cloth"
-mesh = "cloth.obj"
-model = "shell"
-material = "cotton"
-stretch_limit = 10
-translate = [-0.5, 0, -0.5]
-[[pin]]
-body = "cloth"
-where = { plane = { point = [-0.5, 0, 0], normal = [1, 0, 0] } }
-[[pin]]
-body = "cloth"
-where = { plane = { point = [0.5, 0, 0], normal = [1, 0, 0] } }
+  Simulation simulation = experiment.start(experiment.held_cloth() + R"(
 [[collider]]
 name = "ball"
 shape = "sphere"
@@ -75,19 +61,17 @@ center = [0.01, 0.4, 0.02]
 density = 80
 )" + weight);
   Watch watch(simulation);
-  double lowest = centre(simulation, "ball").y(), highest = lowest;
+  Rebound rebound(centre(simulation, "ball").y());
   for (int seen = 0; seen < 24;) {
     simulation.step();
-    const double height = centre(simulation, "ball").y();
-    highest = height < lowest ? height : std::max(highest, height);
-    lowest = std::min(lowest, height);
+    rebound.see(centre(simulation, "ball").y());
     if (simulation.frame() == seen) continue;
     seen = simulation.frame();
     watch.look(simulation);
   }
   return {
-      {"lowest centre of the ball [m]", -0.20, lowest, 0.03, false},
-      {"highest centre after that [m]", 0.25, highest, 0.06, false},
+      {"lowest centre of the ball [m]", -0.20, rebound.lowest, 0.03, false},
+      {"highest centre after that [m]", 0.25, rebound.highest, 0.06, false},
       {"energy gained over energy of the fall", 0, watch.gained() / watch.fallen(), 1e-3, false},
       {"balance gained over energy of the fall", 0, watch.balance_gained() / watch.fallen(), 1e-3, false}};
 }

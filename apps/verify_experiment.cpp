@@ -24,6 +24,25 @@ Experiment::~Experiment() {
   std::filesystem::remove_all(folder_, ignored);
 }
 
+std::string Experiment::held_cloth() const {
+  level_sheet("cloth.obj", 1, 1, 16);
+  return R"(
+[[body]]
+name = "cloth"
+mesh = "cloth.obj"
+model = "shell"
+material = "cotton"
+stretch_limit = 10
+translate = [-0.5, 0, -0.5]
+[[pin]]
+body = "cloth"
+where = { plane = { point = [-0.5, 0, 0], normal = [1, 0, 0] } }
+[[pin]]
+body = "cloth"
+where = { plane = { point = [0.5, 0, 0], normal = [1, 0, 0] } }
+)";
+}
+
 void Experiment::write(const std::string& file, const std::string& content) const {
   const std::filesystem::path path = folder_ / file;
   std::ofstream out(path);

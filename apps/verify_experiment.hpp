@@ -2,6 +2,7 @@
 // written as text, and access to lattice vertices.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +13,16 @@
 namespace muslin::app {
 
 inline constexpr double gravity = 9.8;  ///< of scenes that state no other [m/s²]
+
+/// The lowest height that something has reached, and the highest after that [m].
+struct Rebound {
+  double lowest, highest;
+  explicit Rebound(double height) : lowest(height), highest(height) {}
+  void see(double height) {
+    highest = height < lowest ? height : std::max(highest, height);
+    lowest = std::min(lowest, height);
+  }
+};
 
 /// A temporary folder, removed with the object.
 class Experiment {
@@ -27,6 +38,9 @@ class Experiment {
   void level_sheet(const std::string& file, double x, double z, int cells) const {
     level_sheet(file, x, z, cells, cells);
   }
+  /// Writes a sheet of 1 m as `cloth.obj` and returns tables of a scene: it is cotton about the origin, held
+  /// at two opposite edges.
+  std::string held_cloth() const;
   /// Writes a sheet of `cells_x` by `cells_z` squares; vertex i + k (cells_x + 1).
   void level_sheet(const std::string& file, double x, double z, int cells_x, int cells_z) const;
   /// Writes a ball about the origin [m]: `rings` rows of polygons from pole to pole, `segments` in each.

@@ -2,15 +2,12 @@
 #include "muslin/component/body_maps.hpp"
 
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cache/scratch.hpp"
-#include "support/sheet.hpp"
+#include "support/strip_scene.hpp"
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,17 +20,13 @@
 namespace muslin {
 namespace {
 
-using test::Scratch;
 using testing::HasSubstr;
-
-constexpr int columns = 20, rows = 4;  // of squares
-constexpr double length = 1, width = 0.2;
 
 /// A sheet along x, with `ramp.csv` beside the scene: x of each vertex over the length. A group `end` has the
 /// last column.
-class Maps : public testing::Test {
+class Maps : public test::StripScene {
  protected:
-  Maps() : sheet_(test::flat_sheet(columns, rows, length, width)) {
+  Maps() {
     std::string ramp = "weight\n";
     for (const Vec3& p : sheet_.positions) ramp += fmt::format("{}\n", p.x() / length);
     write("ramp.csv", ramp);
@@ -42,33 +35,7 @@ class Maps : public testing::Test {
       if (sheet_.positions[v].x() > 0.99 * length) end.vertices.push_back(static_cast<int>(v));
     sheet_.groups = {end};
   }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(scratch_.path() / name) << text;
-  }
-  /// A body held at x = 0 with these keys.
-  std::shared_ptr<const Model> model(const std::string& keys, const std::string& rest = "") const {
-    Scene scene = parse_scene(
-        "[time]\nduration = 4\nframe_rate = 25\nsteps_per_frame = 1\n[[body]]\nname = "
-        "'strip'\nmesh = 'sheet'\ncontact = false\n" +
-            keys + "\n[[pin]]\nwhere = { box = [[-0.001, -1, -1], [0.001, 1, 1]] }\n" + rest,
-        scratch_.path() / "scene.toml");
-    scene.meshes["sheet"] = std::make_shared<Mesh>(sheet_);
-    return std::make_shared<const Model>(build_model(scene));
-  }
-  std::string complaint(const std::string& numbers) const {
-    try {
-      model(shell + numbers + " }");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-  static std::vector<Vec3> run(const std::shared_ptr<const Model>& model, int frames) {
-    Simulation simulation(model);
-    for (int f = 0; f < frames; ++f) simulation.advance();
-    const ConstVectors x = simulation.state().positions;
-    return {x.begin(), x.end()};
-  }
+  std::string complaint(const std::string& numbers) const { return complaint_of(shell + numbers + " }"); }
   /// Compares runs with numbers and with maps of those values, bit by bit.
   void expect_equal_bits(const std::string& body,
                          const std::vector<std::pair<std::string, std::string>>& numbers) {
@@ -80,18 +47,14 @@ class Maps : public testing::Test {
       comma = ", ";
     }
     const std::string gravity = "[[force]]\ntype = 'gravity'\n";
-    const std::vector<Vec3> one = run(model(body + plain + " }", gravity), 4);
-    const std::vector<Vec3> other = run(model(body + mapped + " }", gravity), 4);
-    ASSERT_EQ(one.size(), other.size());
-    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(Vec3)), 0);
+    expect_same_bits(run(model_of(body + plain + " }", gravity), 4),
+                     run(model_of(body + mapped + " }", gravity), 4));
   }
 
   static constexpr const char* shell =
       "model = 'shell'\nwarp = [1, 0, 0]\nmaterial = { areal_density = 0.1, membrane_warp = 100, "
       "bending_warp = "
       "1e-5, ";
-  Scratch scratch_;
-  Mesh sheet_;
 };
 
 TEST_F(Maps, OfOneValueEqualTheNumberBitForBit) {
@@ -117,18 +80,18 @@ TEST_F(Maps, OfOneValueEqualTheNumberBitForBit) {
 
 TEST_F(Maps, OfDensityGiveTheIntegralAsMass) {
   const std::string linear = "{ map = 'ramp.csv', from = 0.1, to = 0.4 }";
-  const auto cloth = model("model = 'shell'\nmaterial = { areal_density = " + linear +
-                           ", membrane_warp = 100, bending_warp = 1e-5 }");
+  const auto cloth = model_of("model = 'shell'\nmaterial = { areal_density = " + linear +
+                              ", membrane_warp = 100, bending_warp = 1e-5 }");
   EXPECT_NEAR(cloth->bodies[0].statistics.mass, 0.25 * length * width, 1e-12);
-  const auto block = model("thickness = 0.05\nvoxel_width = 0.05\nmaterial = { density = " + linear +
-                           ", edge_modulus = 3000, face_diagonal_modulus = 700 }");
+  const auto block = model_of("thickness = 0.05\nvoxel_width = 0.05\nmaterial = { density = " + linear +
+                              ", edge_modulus = 3000, face_diagonal_modulus = 700 }");
   EXPECT_NEAR(block->bodies[0].statistics.mass, 0.25 * length * width * 0.05, 1e-9);
 }
 
 TEST_F(Maps, OfStiffnessStretchAStripAsSpringsInSeries) {
   // Under a force per width F the strain is F/K(x): the end moves by ∫ F/K dx = F L ln(K₁/K₀)/(K₁ − K₀).
   const double force = 0.05, soft = 50, stiff = 200;
-  const auto strip = model(
+  const auto strip = model_of(
       "model = 'shell'\nwarp = [1, 0, 0]\nmaterial = { areal_density = 0.1, membrane_warp = { map = "
       "'ramp.csv', "
       "from = 50, to = 200 }, bending_warp = 1e-5, poisson = 0, mass_damping = 40 }",
@@ -142,7 +105,7 @@ TEST_F(Maps, OfStiffnessStretchAStripAsSpringsInSeries) {
 }
 
 TEST_F(Maps, WeightTheVerticesOfAGroup) {
-  const auto cloth = model(std::string(shell) + "stretch_limit = { map = 'end', from = 1.2, to = 1.1 } }");
+  const auto cloth = model_of(std::string(shell) + "stretch_limit = { map = 'end', from = 1.2, to = 1.1 } }");
   const MappedNumber& map = cloth->bodies[0].maps.front();
   EXPECT_EQ(map.at(0), 1.2);
   EXPECT_EQ(map.at(columns), 1.1);
@@ -158,7 +121,7 @@ TEST_F(Maps, TakeImagesByTextureCoordinates) {
               HasSubstr("is an image, but vertex 0 of body `strip`, counted from 0, has no "
                         "texture coordinates"));
   test::add_flat_uvs(sheet_);  // u is x
-  const auto cloth = model(shell + painted + " }");
+  const auto cloth = model_of(shell + painted + " }");
   const MappedNumber& map = cloth->bodies[0].maps.front();
   EXPECT_NEAR(map.at(0), 1, 1e-12);
   EXPECT_NEAR(map.at(columns / 2), 2, 1e-12) << "between the centres of both pixels";
@@ -173,7 +136,7 @@ TEST_F(Maps, TakeImagesByTextureCoordinates) {
 }
 
 TEST_F(Maps, LetNumbersThatFollowFromOthersFollowEverywhere) {
-  const auto cloth = model(
+  const auto cloth = model_of(
       "model = 'shell'\nmaterial = { areal_density = 0.1, membrane_warp = { map = 'ramp.csv', from = 10, to "
       "= 30 "
       "}, bending_warp = { map = 'ramp.csv', from = 1e-6, to = 1e-4 } }");
@@ -191,7 +154,7 @@ TEST_F(Maps, OfDensityChangeTheHashThatASavedStateMustFit) {
       "model = 'shell'\nmaterial = { membrane_warp = 100, bending_warp = 1e-5, areal_density = "
       "{ map = 'ramp.csv', from = 1, to = ";
   const auto hash = [&](const std::string& to) {
-    return model(numbers + to + " } }")->bodies[0].material_hash(0);
+    return model_of(numbers + to + " } }")->bodies[0].material_hash(0);
   };
   EXPECT_EQ(hash("2"), hash("2"));
   EXPECT_NE(hash("2"), hash("3"));
@@ -199,7 +162,7 @@ TEST_F(Maps, OfDensityChangeTheHashThatASavedStateMustFit) {
 
 TEST_F(Maps, OfStiffnessMayChangeOnAResumeWhichTheAccountShows) {
   const auto cloth = [&](const std::string& to) {
-    return model(
+    return model_of(
         "model = 'shell'\nwarp = [1, 0, 0]\nmaterial = { areal_density = 0.1, bending_warp = 1e-5, "
         "membrane_warp = { map = 'ramp.csv', from = 10, to = " +
             to + " } }\n",

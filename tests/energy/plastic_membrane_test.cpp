@@ -117,7 +117,7 @@ TEST(PlasticMembrane, BelowYieldAndInCompressionIsElastic) {
 
 TEST(PlasticMembrane, RefusesNumbersOutOfRange) {
   const Strip strip(0, 0);
-  const auto make = [&](const MembraneModuli& moduli, const MembraneYield& limit) {
+  const auto make = [&](const MembraneModuli& moduli, const StrainYield& limit) {
     PlasticMembrane("strip", strip.shell, moduli, limit);
   };
   EXPECT_THROW(make({warp, weft, 30, 0}, {0, 0}), Error);

@@ -55,7 +55,7 @@ TEST(Inside, ABowlIsASheetUnlessItIsFilled) {
   EXPECT_TRUE(as_lattice(sheet.bodies.front())->sheet);
   EXPECT_THAT(sheet.warnings, testing::Contains(testing::HasSubstr("inside = \"filled\"")));
   EXPECT_FALSE(as_lattice(solid.bodies.front())->sheet);
-  // Where the winding number of a hemisphere is above one half: below its rim.
+  // The winding number of a hemisphere is above one half below its rim.
   EXPECT_NEAR(volume(solid), 2 * std::numbers::pi / 3, 0.15);
 }
 

@@ -183,6 +183,17 @@ TEST(Untangle, PinsStayAndWhatTheyHoldTogetherIsNamed) {
   EXPECT_THAT(text, HasSubstr("of \"low\" crosses face"));
 }
 
+TEST(Untangle, SaysWhatStaysInsideThoughNothingCrosses) {
+  TangledScene scene;
+  scene.sheet("cloth", 0.4, 8, [](double, double) { return 0.095; });
+  scene.add("[[collider]]\nname = 'table'\nshape = 'box'\ncenter = [0, 0, 0]\nsize = [1, 0.2, 1]\n");
+  scene.add("[[pin]]\nbody = 'cloth'\nwhere = { box = [[-1, -1, -1], [1, 1, 1]] }\n");
+  const Simulation simulation(scene.build());
+  EXPECT_EQ(simulation.untangled().left, 0U);
+  EXPECT_EQ(simulation.untangled().lost_left, 81U);
+  EXPECT_THAT(describe(simulation.untangled()), HasSubstr("81 points are still on a wrong side"));
+}
+
 TEST(Untangle, RefusesOrIgnoresIfTheSceneSaysSo) {
   TangledScene scene;
   scene.sheet("shirt", 0.4, 20, [](double, double) { return 0.0; });

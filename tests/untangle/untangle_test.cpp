@@ -1,4 +1,4 @@
-// What a tangle is made of: piercings, insides of solids, and separations as an energy.
+// A tangle consists of piercings, insides of solids and separations, which are an energy.
 #include "support/potential_battery.hpp"
 #include "support/tangles.hpp"
 #include <gmock/gmock.h>

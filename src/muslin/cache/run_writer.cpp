@@ -421,9 +421,13 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
   const Untangled& repair = simulation.untangled();
   if (repair.needed()) {
     warnings.push_back(describe(repair));
-    run["tangled_start"] = {{"crossings", repair.crossings}, {"wrong_side", repair.lost},
-                            {"too_close", repair.close},     {"left", repair.left},
-                            {"depth", repair.depth},         {"moved", repair.moved},
+    run["tangled_start"] = {{"crossings", repair.crossings},
+                            {"wrong_side", repair.lost},
+                            {"too_close", repair.close},
+                            {"left", repair.left},
+                            {"wrong_side_left", repair.lost_left},
+                            {"depth", repair.depth},
+                            {"moved", repair.moved},
                             {"steps", repair.steps}};
   }
   for (std::string& warning : warnings_of(quality)) warnings.push_back(std::move(warning));

@@ -82,7 +82,7 @@ class PlasticMembrane::Energy : public Elements<TriangleStencil, PlasticMembrane
 };
 
 PlasticMembrane::PlasticMembrane(const std::string& name, const Shell& shell, const MembraneModuli& moduli,
-                                 const MembraneYield& yield, std::shared_ptr<const SymmetricPattern> pattern)
+                                 const StrainYield& yield, std::shared_ptr<const SymmetricPattern> pattern)
     : name_(name + ".plastic_strain") {
   require(yield.strain > 0, "the yield strain of a membrane is not positive", "give more than 0");
   require(yield.hardening >= 0 && yield.hardening <= 1, "the hardening of threads is not between 0 and 1",

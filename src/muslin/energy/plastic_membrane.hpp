@@ -8,6 +8,7 @@
 #include "muslin/energy/elements.hpp"
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/plastic_membrane_law.hpp"
+#include "muslin/energy/strain_yield.hpp"
 #include "muslin/energy/triangle_stencil.hpp"
 #include "muslin/potential/potential.hpp"
 #include "muslin/shell/shell.hpp"
@@ -16,18 +17,13 @@ namespace muslin {
 
 extern template class Elements<TriangleStencil, PlasticMembraneLaw>;
 
-struct MembraneYield {
-  double strain = 0;     ///< > 0: of a strip pulled along a thread, beyond which it stays longer
-  double hardening = 0;  ///< h, 0 … 1: stiffness beyond yield over that below
-};
-
 class PlasticMembrane : public Load {
  public:
   /// `name` is unique among the loads of a run and names the array of plastic strains in the history, those
   /// of warp and weft of each triangle. `pattern` is the shell's block_pattern, or null. Errors: usage, if a
   /// modulus or a number of `yield` is out of range; warp and weft must resist stretch.
   PlasticMembrane(const std::string& name, const Shell& shell, const MembraneModuli& moduli,
-                  const MembraneYield& yield, std::shared_ptr<const SymmetricPattern> pattern = nullptr);
+                  const StrainYield& yield, std::shared_ptr<const SymmetricPattern> pattern = nullptr);
   ~PlasticMembrane() override;
 
   std::unique_ptr<Potential> potential(const StepContext& step) const override;

@@ -77,7 +77,7 @@ class PlasticSprings::Energy : public Elements<BarStencil, PlasticSpringLaw> {
 
 PlasticSprings::PlasticSprings(const std::string& name, const Springs& springs, std::size_t vertices,
                                double width, const std::array<double, 3>& moduli,
-                               std::span<const float> weights, const SpringYield& yield)
+                               std::span<const float> weights, const StrainYield& yield)
     : name_(name + ".plastic_strain") {
   require(yield.strain > 0, "a yield strain is not positive", "give more than 0");
   require(yield.hardening >= 0 && yield.hardening <= 1, "the hardening of springs is not between 0 and 1",

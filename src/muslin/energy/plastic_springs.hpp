@@ -11,17 +11,13 @@
 #include "muslin/energy/bar_stencil.hpp"
 #include "muslin/energy/elements.hpp"
 #include "muslin/energy/plastic_spring_law.hpp"
+#include "muslin/energy/strain_yield.hpp"
 #include "muslin/lattice/springs.hpp"
 #include "muslin/potential/potential.hpp"
 
 namespace muslin {
 
 extern template class Elements<BarStencil, PlasticSpringLaw>;
-
-struct SpringYield {
-  double strain = 0;     ///< > 0: elastic strain beyond which a spring takes a set
-  double hardening = 0;  ///< h, 0 … 1: stiffness beyond yield over that below
-};
 
 class PlasticSprings : public Load {
  public:
@@ -30,7 +26,7 @@ class PlasticSprings : public Load {
   /// of `yield` is out of range.
   PlasticSprings(const std::string& name, const Springs& springs, std::size_t vertices, double width,
                  const std::array<double, 3>& moduli, std::span<const float> weights,
-                 const SpringYield& yield);
+                 const StrainYield& yield);
   ~PlasticSprings() override;
 
   std::unique_ptr<Potential> potential(const StepContext& step) const override;

@@ -39,7 +39,7 @@ struct MUSLIN_API TimeSettings {
   double step() const { return 1.0 / (frame_rate * steps_per_frame.value_or(1)); }
 };
 
-/// What a run does about surfaces that cross or are closer than their thickness at its start.
+/// A run treats surfaces that cross or are closer than their thickness at its start in one of these ways.
 enum class TangledStart {
   refuse,  ///< it does not start
   repair,  ///< it pulls them apart first; what still crosses then is left free until it parts

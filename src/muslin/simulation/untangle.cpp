@@ -22,7 +22,7 @@ constexpr int most_steps = 240;           // four seconds
 /// A repair ends if this many steps in a row do not make the tangle smaller, or shallower by this factor.
 constexpr int patience = 30, stuck_after = 3;
 constexpr double shallower = 0.98;
-/// The same if nothing crosses and only gaps are small: contact can go on from there.
+/// If nothing crosses and only gaps are small, it ends after fewer: contact can go on from there.
 constexpr int patience_if_close = 12;
 constexpr double accuracy = 0.05;  // of a step, over the separations
 constexpr std::size_t listed = 4;
@@ -59,6 +59,7 @@ class Repair {
       tangle = find(since >= stuck_after);
     }
     report.left = tangle.crossing.size();
+    report.lost_left = tangle.wrong.size();
     name_places(report);
     for (std::size_t v = 0; v < begin.size(); ++v)
       report.moved = std::max(report.moved, (state_.motion.positions[v] - begin[v]).norm());

@@ -15,6 +15,7 @@ struct MUSLIN_API Untangled {
   std::size_t lost = 0;       ///< points that were on a wrong side
   std::size_t close = 0;      ///< pairs of features that were closer than their thickness
   std::size_t left = 0;       ///< pairs of triangles that still cross
+  std::size_t lost_left = 0;  ///< points that are still on a wrong side
   double depth = 0;           ///< of the deepest point [m]
   double moved = 0;           ///< greatest displacement [m]
   int steps = 0;

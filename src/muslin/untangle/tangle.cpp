@@ -355,7 +355,7 @@ class TangleFinder::Search {
   Vec3 any_way_out(const ContactPair& pair) const {
     if (pair.kind == PairKind::vertex_triangle) {
       const Vec3 n = normal(pair.second);
-      return n.allFinite() ? n : Vec3(0, 1, 0);
+      return n.norm() > 0 ? n : Vec3(0, 1, 0);
     }
     const auto along = [&](std::size_t i) {
       return Vec3(x_[at(pair.points[i + 1])] - x_[at(pair.points[i])]);

@@ -198,7 +198,7 @@ class LatticeTerms {
             {"springs", EnergyRole::elastic,
              std::make_shared<PlasticSprings>(
                  body_.name, body_.springs, body_.lattice.vertex_count(), body_.lattice.width, moduli,
-                 varied(spring_weights()), SpringYield{*material.yield_strain, material.strain_hardening})});
+                 varied(spring_weights()), StrainYield{*material.yield_strain, material.strain_hardening})});
       } else {
         body_.potentials.push_back({"springs", EnergyRole::elastic, springs});
       }

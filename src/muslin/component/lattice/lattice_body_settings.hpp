@@ -9,7 +9,8 @@
 namespace muslin {
 
 struct LatticeBodySettings {
-  /// What the mesh bounds; `automatic`: a solid if it is closed or has small holes only, else a sheet.
+  /// The mesh bounds a solid or is a sheet; `automatic`: a solid if it is closed or has small holes only,
+  /// else a sheet.
   enum class Inside { automatic, filled, sheet } inside = Inside::automatic;
   std::optional<double> thickness;  ///< of an open mesh [m]; default: one voxel width
   LatticeSettings lattice;

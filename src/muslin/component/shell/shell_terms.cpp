@@ -95,7 +95,7 @@ class ShellTerms {
                            std::make_shared<PlasticMembrane>(
                                body_.name, body_.shell,
                                MembraneModuli{m.membrane_warp, m.membrane_weft, m.membrane_shear, m.poisson},
-                               MembraneYield{*m.yield_strain, m.strain_hardening}, pattern)});
+                               StrainYield{*m.yield_strain, m.strain_hardening}, pattern)});
   }
   bool is_limited() const {
     if (!body_.has_several_fabrics()) return body_.own().stretch_limit.has_value();
