@@ -167,6 +167,7 @@ MUSLIN_INLINE void find_deviations(const BentHinge& h, const double* rest, doubl
 /// Returns the hinges' vertices, as ElementSlabs takes them.
 inline std::vector<std::array<int, 4>> hinge_vertices(const Shell& shell) {
   std::vector<std::array<int, 4>> vertices;
+  vertices.reserve(shell.hinges.size());
   for (const Hinge& hinge : shell.hinges) vertices.push_back(hinge.vertices);
   return vertices;
 }

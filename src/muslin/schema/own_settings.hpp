@@ -17,8 +17,8 @@ class OwnSettings {
   /// Returns them for writing; those of another type are replaced by the defaults of T.
   template <class T>
   T& as() {
-    T* own = std::any_cast<T>(&value_);
-    return own != nullptr ? *own : value_.emplace<T>();
+    if (std::any_cast<T>(&value_) == nullptr) value_ = T();
+    return std::any_cast<T&>(value_);
   }
 
  private:

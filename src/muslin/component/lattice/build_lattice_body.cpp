@@ -151,6 +151,7 @@ class LatticeBuilder {
                   "`stiffness_damping` of springs cannot vary by a map",
                   "give a number, which damps in proportion to the moduli, or a solid by `law`");
     std::vector<Vec3> vertices;
+    vertices.reserve(body_.lattice.vertex_count());
     for (std::size_t v = 0; v < body_.lattice.vertex_count(); ++v)
       vertices.push_back(body_.lattice.rest_position(v));
     body_.vertex_maps = over_points(body_.maps, body_.mesh, vertices);

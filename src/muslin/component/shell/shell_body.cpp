@@ -74,6 +74,7 @@ const ShellMaterial& ShellBody::material() const {
 
 std::vector<ShellMaterial> ShellBody::materials_of_triangles(double time) const {
   std::vector<std::vector<double>> numbers;
+  numbers.reserve(fabrics.size());
   for (const FabricInUse& fabric : fabrics) numbers.push_back(numbers_at(fabric.numbers().variations, time));
   std::vector<ShellMaterial> materials;
   materials.reserve(shell.triangles.size());
@@ -128,6 +129,7 @@ Shell ShellBody::shell_at(double at_time) const {
 template <class Visit>
 void ShellBody::for_each_share(const Visit& visit) const {
   std::vector<const MappedNumber*> densities;
+  densities.reserve(fabrics.size());
   for (const FabricInUse& fabric : fabrics) densities.push_back(find_map(fabric.maps, "areal_density"));
   for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
     const std::size_t f = at(triangle_fabrics[t]);
