@@ -156,6 +156,7 @@ NearBorders near_borders(const Mesh& mesh) {
   std::sort(border.begin(), border.end());
   border.erase(std::unique(border.begin(), border.end()), border.end());
   std::vector<std::array<int, 2>> edges;
+  edges.reserve(uses.size());
   for (const EdgeUse& use : uses) edges.push_back({use.low, use.high});
   const Cubes cubes(mesh.positions, border, near_share * length / static_cast<double>(open.size()));
   for (const int v : border) {

@@ -241,6 +241,7 @@ class ObjReader {
   /// The runs must be complete.
   std::vector<MeshGroup> materials() const {
     std::vector<MeshGroup> result;
+    result.reserve(material_names_.size());
     for (const std::string& name : material_names_) result.push_back({name, {}, {}});
     for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
       if (runs_[r].material < 0) continue;

@@ -90,6 +90,7 @@ class RuleBuilder {
     const Component& component = model_.body(side.body);
     const std::vector<MeshGroup>& groups = component.mesh.groups;
     std::vector<std::string> names;
+    names.reserve(groups.size());
     for (const MeshGroup& group : groups) names.push_back(group.name);
     const auto group = std::find(names.begin(), names.end(), *side.group);
     if (group == names.end())

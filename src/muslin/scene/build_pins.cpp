@@ -40,6 +40,7 @@ std::vector<double> weights_of(const Model& model, const PinSettings& settings, 
       read_maps(settings.variations, pin_table(), {model.scene.file, model.scene.meshes}, body);
   if (maps.empty()) return weights;
   std::vector<Vec3> points;
+  points.reserve(pin.vertices.size());
   for (const int v : pin.vertices) points.push_back(model.rest_positions[at(v)]);
   if (!body.is_mesh()) maps = over_points(maps, body.mesh, points);
   for (std::size_t k = 0; k < weights.size(); ++k)

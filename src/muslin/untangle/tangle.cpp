@@ -119,7 +119,7 @@ class TangleFinder::Search {
     return surface_.radius_of(point) + surface_.radius_of(other) + gap_share * model_.distance;
   }
 
-  /// Adds that point `p` or the place on edge `e` has to pass the place on a triangle by `gap`.
+  /// Leaves out what has no direction, at triangles without area, and what nothing can push.
   void add(const Separation& s) {
     if (s.normal.allFinite() && std::isfinite(s.stiffness)) tangle_.separations.push_back(s);
   }
@@ -280,7 +280,8 @@ class TangleFinder::Search {
       if (!solid && !clear) continue;
       if (!solid) {
         const auto behind = [](double side) { return side > 0 ? -1 : 1; };
-        layerings_.try_emplace(pair, Layering{true, behind(votes.first), behind(votes.second)});
+        const Layering seen{true, behind(votes.first), behind(votes.second)};
+        if (!layerings_.try_emplace(pair, seen).first->second.layers) continue;
       }
       sided_.insert(pair);
     }
