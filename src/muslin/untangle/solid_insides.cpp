@@ -80,6 +80,7 @@ std::vector<LostPoint> find_solid_insides(const ContactSurface& surface, const S
     crossed.insert({b, a});
   }
   std::vector<Box> boxes;
+  boxes.reserve(std::size_t(pieces.count()));
   for (int p = 0; p < pieces.count(); ++p) boxes.push_back(box_of(pieces.points(p), x));
   std::vector<LostPoint> all;
   for (int s = 0; s < pieces.count(); ++s) {

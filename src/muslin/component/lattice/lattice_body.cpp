@@ -1,4 +1,3 @@
-#include "muslin/core/hash.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include "muslin/component/body_maps.hpp"
 #include "muslin/component/body_mesh.hpp"
 #include "muslin/core/disjoint_sets.hpp"
+#include "muslin/core/hash.hpp"
 #include "muslin/core/parallel.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/lattice/lattice_moduli.hpp"
