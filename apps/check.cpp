@@ -34,7 +34,8 @@ void add_check(CLI::App& program) {
       print(a->json ? describe_json(model, crossings) : describe_text(model, crossings));
       if (!a->picture.empty()) write_png(a->picture, draw_start(model, crossings));
       if (crossings.empty()) return;
-      const std::string problem = fmt::format("surfaces cross at the start in {} places", crossings.size());
+      const std::string problem = fmt::format("surfaces cross at the start in {} places: {}",
+                                              crossings.size(), describe_bodies(*model.contact, crossings));
       const std::string where = a->picture.empty() ? "; --picture FILE.png shows where" : "";
       const TangledStart tangled = model.scene.contact.tangled;
       if (tangled == TangledStart::refuse) {

@@ -1,5 +1,6 @@
-"""Notices about a mesh before baking, in Blender's terms. Needs no Blender."""
+"""Notices about meshes and bakes, and the program's messages, in Blender's terms. Needs no Blender."""
 
+import re
 from dataclasses import dataclass
 
 ERROR, WARNING, INFO = "ERROR", "WARNING", "INFO"
@@ -78,6 +79,72 @@ def split_problem(text):
     """Returns (problem, remedy) of an error `…; remedy`."""
     what, mark, remedy = text.rpartition("; ")
     return (what, remedy) if mark else (text, "")
+
+
+# Terms that the command line and the panel name differently.
+WORDS = (("restart the run without --resume", "use Bake, from the start"),
+         ("restart the run", "use Bake, from the start"), ("time.steps_per_frame", "Steps per Frame"),
+         ("`steps_per_frame`", "Steps per Frame"), ("`voxel_width`", "Voxel Width"), ("voxel_width", "Voxel Width"),
+         ("`thickness`", "Thickness"), (", then continue with --resume", ", then press Resume"),
+         ("`stretch_limit`", "Stretch Limit"),
+         ("`rest_mesh`", "Rest Shape"), ("`self_contact = false`", "Self Contact off"), ("`self_contact`", "Self Contact"),
+         ("`tangled = \"repair\"`", "Repair under Tangled Start"), ("`layer`", "Layer"),
+         ("their keyframes", "their animation"),
+         ("; --picture FILE.png shows where", ", or choose Repair under Tangled Start"))
+
+
+PARTS = ((".material", "Fabric"), (".voxel_width", "Voxel Width"), (".thickness", "Thickness"), (".model", "Kind"),
+         (".rest_mesh", "Rest Shape"), (".mesh", "The mesh"))
+
+
+def in_blender(problem, names):
+    """An error of muslin without the paths of files the artist never saw, bodies by their objects' names."""
+    for mark in ("scene.toml: ", "scene.toml:"):
+        if mark in problem.split("; ")[0]:
+            problem = problem.split(mark, 1)[1]
+            problem = problem.lstrip("0123456789:").lstrip()
+            break
+    for body, name in names.items():
+        mark = f"/{body}.obj: "
+        if mark in problem.split("; ")[0]:
+            problem = f"{name}: {problem.split(mark, 1)[1]}"
+    changed = "the bodies are not those of the run to resume; changed: "
+    if changed in problem:
+        settings = problem.split(changed)[1].split("; ")[0].split(", ")
+        parts = dict.fromkeys(next((panel for key, panel in PARTS if key in s), s) for s in settings)
+        return f"{', '.join(parts)} changed since the first frame; undo the change, or use Bake, from the start"
+    for body, name in names.items():
+        problem = problem.replace(f"`{body}`", f"\"{name}\"")
+    for word, in_panel in WORDS:
+        problem = problem.replace(word, in_panel)
+    return problem
+
+
+def crossing_faces(crossings, names):
+    """{object: numbers of its faces that cross something, ascending} of what `muslin check SCENE --json` lists."""
+    faces = {}
+    for crossing in crossings:
+        for body, face in zip(crossing["bodies"], crossing["faces"]):
+            if face is not None and body in names:
+                faces.setdefault(names[body], set()).add(face)
+    return {name: sorted(found) for name, found in faces.items()}
+
+
+def warnings_of(warnings, names, said=(), first_frame=0):
+    """The program's warnings as notices of objects, without those `said`. `names`: body → object; frames of the run
+    count from `first_frame`."""
+    notices = []
+    for warning in warnings:
+        body, colon, text = warning.removeprefix("body ").partition(": ")
+        if not warning.startswith("body ") or not colon:
+            body, text = "", warning
+        if text in said:
+            continue
+        text = re.sub(r"\bframes? \d+(?:(?: to |, | and )\d+)*",
+                      lambda found: re.sub(r"\d+", lambda n: str(int(n[0]) + first_frame), found[0]), text)
+        text = in_blender(text, names)
+        notices.append(Notice(WARNING, text[:1].upper() + text[1:], names.get(body, "")))
+    return notices
 
 
 def estimate_voxels(area, volume, closed, thickness, width):

@@ -8,13 +8,14 @@ import time
 import bpy
 import numpy as np
 
-from . import axes, point_cache
+from . import axes, maps, point_cache
 from .advice import ERROR, INFO, WARNING, Notice, counted, suggest_width
 from .force_fields import Fields, along_z, field_objects, fields_notices, has_falloff, unit_scale
 from .playback import modifier_of
-from .scene_text import Cloth, Collider, SceneInput, Wind, body_names, obj_text, scene_toml
+from .scene_text import Cloth, Collider, Painted, SceneInput, Wind, body_names, obj_text, scene_toml
 
-PIN_WEIGHT = 0.5
+PIN_WEIGHT = 0.5  # from which a vertex is held exactly
+PINS = "pins"  # names the file of the weights of soft pins
 
 
 class Problem(Exception):
@@ -34,6 +35,23 @@ def collider_objects(scene):
 def own_friction(obj):
     """None if the scene's setting applies."""
     return obj.muslin.friction if obj.muslin.use_friction else None
+
+
+def own_layer(obj):
+    """None if it has no place in an order."""
+    return obj.muslin.layer if obj.muslin.use_layer else None
+
+
+def gravity_of(scene):
+    """That of the current frame, (3,) in muslin's axes [m/s²]."""
+    gravity = axes.turned(scene.gravity, unit_scale(scene)) if scene.use_gravity else np.zeros(3)
+    return tuple(float(x) for x in gravity)
+
+
+def pressure_of(obj):
+    """That of the current frame [Pa]; 0: none."""
+    m = obj.muslin
+    return m.pressure if m.use_pressure and m.model == "SHELL" else 0.0
 
 
 def frame_rate(scene):
@@ -71,7 +89,7 @@ def below_the_cloth(objects):
 class Snapshot:
     """A mesh as evaluated: arrays, in the object's own space."""
 
-    def __init__(self, obj, depsgraph, topology=False, group=None):
+    def __init__(self, obj, depsgraph, topology=False, groups=()):
         evaluated = obj.evaluated_get(depsgraph)
         self.matrix = np.array(evaluated.matrix_world)
         keep = {"preserve_all_data_layers": True, "depsgraph": depsgraph} if topology else {}
@@ -82,11 +100,12 @@ class Snapshot:
             mesh.vertices.foreach_get("co", points)
             self.points = points.reshape(-1, 3).astype(float)
             if topology:
-                self._read_topology(mesh, group)
+                self._read_topology(mesh, obj, groups)
         finally:
             evaluated.to_mesh_clear()
 
-    def _read_topology(self, mesh, group):
+    def _read_topology(self, mesh, obj, groups):
+        """`groups`: names of those whose weights are wanted; `pinned` comes from the pin group of the object."""
         self.corners = np.empty(len(mesh.loops), np.int32)
         mesh.loops.foreach_get("vertex_index", self.corners)
         self.sizes = np.empty(len(mesh.polygons), np.int32)
@@ -99,10 +118,14 @@ class Snapshot:
         self.unwrapped = self.uvs is None or uv_areas(self.uvs, self.sizes).all()
         if not self.unwrapped:
             self.uvs = None  # threads need a direction on every polygon
-        self.pinned = []
-        if group is not None:
-            self.pinned = [v.index for v in mesh.vertices
-                           if any(g.group == group and g.weight >= PIN_WEIGHT for g in v.groups)]
+        indices = {obj.vertex_groups[name].index: name for name in groups}
+        self.weights = {name: np.zeros(len(mesh.vertices)) for name in groups}
+        for vertex in mesh.vertices if indices else ():
+            for entry in vertex.groups:
+                if entry.group in indices:
+                    self.weights[indices[entry.group]][vertex.index] = entry.weight
+        pins = self.weights.get(obj.muslin.pin_group, np.zeros(0))
+        self.pinned = np.flatnonzero(pins > 0 if obj.muslin.use_soft_pins else pins >= PIN_WEIGHT)
 
     def world(self, scale):
         return axes.to_muslin(self.points, self.matrix, scale)
@@ -123,14 +146,21 @@ def uv_areas(uvs, sizes):
     return np.abs(areas) > 1e-12
 
 
-def pin_group_index(obj):
-    name = obj.muslin.pin_group
-    if not name:
-        return None
-    group = obj.vertex_groups.get(name)
-    if group is None:
-        raise Problem(f"{obj.name}: there is no vertex group \"{name}\" to pin: choose one under Pins")
-    return group.index
+def groups_of(obj):
+    """The names of the vertex groups that its pins and maps use. Raises Problem."""
+    if obj.muslin.role != "CLOTH":
+        return []
+    names = []
+    for entry in obj.muslin.maps:
+        if not entry.group:
+            raise Problem(f"{obj.name}: a map has no vertex group: choose one under Maps, or remove the map")
+        if entry.group not in obj.vertex_groups:
+            raise Problem(f"{obj.name}: there is no vertex group \"{entry.group}\": choose one under Maps")
+        names.append(entry.group)
+    pins = obj.muslin.pin_group
+    if pins and pins not in obj.vertex_groups:
+        raise Problem(f"{obj.name}: there is no vertex group \"{pins}\" to pin: choose one under Pins")
+    return names + [pins] if pins else names
 
 
 def require_ready(scene):
@@ -139,18 +169,24 @@ def require_ready(scene):
         raise Problem("Save the file first: the bake is stored in a folder beside it")
     if not cloth_objects(scene):
         raise Problem("No object of this scene is muslin cloth: select a mesh and choose Muslin Cloth under Physics")
+    first, last = scene.muslin.frames(scene)
+    if last < first:
+        raise Problem(f"The range ends in frame {last}, before it begins in frame {first}: set Start and End under Scene")
+    for obj in cloth_objects(scene):
+        if obj.library:
+            raise Problem(f"{obj.name} is linked from another file and cannot play a bake: Object > Library Override > "
+                          "Make, then bake")
     for obj in cloth_objects(scene) + collider_objects(scene):
         if obj.mode == "EDIT":
             raise Problem(f"{obj.name} is in Edit Mode: leave it with Tab, so that the mesh is up to date")
         if not obj.visible_get():
             raise Problem(f"{obj.name} is hidden, so Blender does not animate it: show it, or remove its muslin role")
     for obj in cloth_objects(scene):
-        pin_group_index(obj)
+        groups_of(obj)
 
 
 def snapshot(obj, depsgraph, topology=False):
-    group = pin_group_index(obj) if topology and obj.muslin.role == "CLOTH" else None
-    taken = Snapshot(obj, depsgraph, topology, group)
+    taken = Snapshot(obj, depsgraph, topology, groups_of(obj) if topology else ())
     if not np.isfinite(taken.matrix).all() or not np.isfinite(taken.points).all():
         raise Problem(f"{obj.name} has a coordinate that is not a number: check its transform, modifiers and drivers")
     if abs(np.linalg.det(taken.matrix[:3, :3])) < 1e-12 * max(np.abs(taken.matrix[:3, :3]).max(), 1e-30) ** 3:
@@ -165,8 +201,16 @@ def notices_of(obj, taken):
     def say(level, text):
         notices.append(Notice(level, text, obj.name))
 
-    if obj.muslin.pin_group and not taken.pinned:
-        say(ERROR, f"No vertex of \"{obj.muslin.pin_group}\" has a weight of 0.5 or more: paint it, or clear Pin Group")
+    group = obj.muslin.pin_group
+    if group and not len(taken.pinned):
+        least = "above 0" if obj.muslin.use_soft_pins else "of 0.5 or more"
+        say(ERROR, f"No vertex of \"{group}\" has a weight {least}: paint it, or clear Pin Group")
+    elif group and not obj.muslin.use_soft_pins:
+        partial = int(np.count_nonzero((taken.weights[group] > 0) & (taken.weights[group] < 1)))
+        if partial:
+            n = counted(partial, "vertex has a weight", "vertices have weights")
+            say(WARNING, f"{n} between 0 and 1 in \"{group}\": from 0.5 on they are held, below they are free. Soft, under "
+                         "Pins, holds by the weight")
     if obj.muslin.model == "SHELL" and not taken.unwrapped:
         say(INFO, "Some polygons have no area in the UV map, which gives the threads their direction: they run along the "
                   "longest side instead. UV > Unwrap lets you choose")
@@ -177,6 +221,8 @@ def notices_of(obj, taken):
     for modifier in obj.modifiers:
         if modifier == cache:
             break
+        if modifier.type in ("CLOTH", "SOFT_BODY") and modifier.show_viewport:
+            say(WARNING, f"{modifier.name} above Muslin simulates this mesh too, and the cloth follows it: remove it")
         if modifier.type in ("SUBSURF", "MULTIRES") and modifier.levels != modifier.render_levels:
             say(WARNING, f"{modifier.name} above Muslin has other levels in renders: make them equal, or move it below")
     return notices
@@ -217,18 +263,25 @@ def scene_input(scene, names, snapshots, first, last):
     """The scene as it stands at the first frame. `names`: object → body; `snapshots`: object → Snapshot."""
     props = scene.muslin
     scale, rate = unit_scale(scene), frame_rate(scene)
-    gravity = axes.turned(scene.gravity, scale) if scene.use_gravity else np.zeros(3)
     result = SceneInput(title=f"{scene.name} of {os.path.basename(bpy.data.filepath)}", frames=last - first,
-                        frame_rate=rate, steps_per_frame=props.steps(), gravity=tuple(gravity),
+                        frame_rate=rate, steps_per_frame=props.steps(), gravity=[gravity_of(scene)],
                         air_density=props.air_density, contact=props.use_contact,
-                        effort=props.effort.lower(), friction=props.friction)
+                        effort=props.effort.lower(), friction=props.friction,
+                        distance=props.contact_distance * scale, tangled=props.tangled.lower())
     for obj in cloth_objects(scene):
         m, name = obj.muslin, names[obj.name]
         cloth = Cloth(name=name, model=m.model.lower(), material=m.fabric, thickness=m.thickness * scale,
-                      pinned=bool(snapshots[obj.name].pinned), self_contact=m.use_self_contact,
-                      friction=own_friction(obj))
+                      pinned=len(snapshots[obj.name].pinned) > 0, self_contact=m.use_self_contact,
+                      friction=own_friction(obj), layer=own_layer(obj), pressures=[pressure_of(obj)])
         if m.fabric.endswith(".toml"):
             cloth.material = bpy.path.abspath(m.fabric)
+        try:
+            cloth.numbers, cloth.own_numbers = maps.adjusted(
+                name, cloth.model, cloth.material,
+                {"weight": m.weight_factor, "stiffness": m.stiffness_factor, "bending": m.bending_factor,
+                 "damping": m.damping_factor}, [(x.what.lower(), x.low, x.high) for x in m.maps])
+        except maps.Refused as refused:
+            raise Problem(f"{obj.name}: {refused}") from None
         if m.model == "LATTICE":
             cloth.voxel_width = (m.voxel_width or suggestion(obj, snapshots[obj.name])) * scale
         else:
@@ -238,12 +291,14 @@ def scene_input(scene, names, snapshots, first, last):
                 cloth.stretch_limit = m.stretch_limit
         if m.use_soft_pins and cloth.pinned:
             cloth.pin_stiffness = m.pin_stiffness
+            if snapshots[obj.name].weights[m.pin_group].min() < 1:
+                cloth.pin_weight = Painted(maps.map_file(name, PINS), 0, 1)
         if m.use_release and cloth.pinned:
             # Less than a step later: in the frame itself they still hold.
             cloth.release = (max(m.release_frame - first, 0) + 0.5 / (props.steps() or 1000)) / rate
         result.cloths.append(cloth)
     for obj in collider_objects(scene):
-        result.colliders.append(Collider(names[obj.name], friction=own_friction(obj)))
+        result.colliders.append(Collider(names[obj.name], friction=own_friction(obj), layer=own_layer(obj)))
     return result
 
 
@@ -292,6 +347,7 @@ class Capture:
         self.matrices = {name: [] for name in self.cloths}
         self.snapshots, self.writers, self.moves = {}, {}, {}
         self.air, self.fields = Air(scene), Fields(scene)
+        self.gravity, self.pressures = [], {name: [] for name in self.cloths}  # one a frame
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def scene(self):
@@ -319,6 +375,8 @@ class Capture:
         for name, body in self.names.items():
             taken = self.snapshots[name]
             (folder / f"{body}.obj").write_text(taken.obj(self.scale), encoding="utf-8")
+            for what, group in self.painted(name):
+                (folder / maps.map_file(body, what)).write_text(maps.weights_text(taken.weights[group]), encoding="utf-8")
         for cloth in self.input.cloths:
             if not cloth.rest_mesh:
                 continue
@@ -330,11 +388,19 @@ class Capture:
             points = axes.to_muslin(base, taken.matrix, self.scale)
             (folder / cloth.rest_mesh).write_text(taken.obj(self.scale, points), encoding="utf-8")
 
+    def painted(self, name):
+        """(what, vertex group) of the maps of an object, the weights of soft pins among them."""
+        if name not in self.cloths:
+            return []
+        m = bpy.data.objects[name].muslin
+        pins = [(PINS, m.pin_group)] if m.use_soft_pins and m.pin_group else []
+        return [(x.what.lower(), x.group) for x in m.maps] + pins
+
     def follows(self, name):
         """Returns true if the object's points are needed in every frame."""
         if name not in self.cloths:
             return True
-        return bool(self.snapshots[name].pinned) and bpy.data.objects[name].muslin.pin_animated
+        return len(self.snapshots[name].pinned) > 0 and bpy.data.objects[name].muslin.pin_animated
 
     def step(self, seconds):
         """Samples frames for about this long; True when all are done."""
@@ -353,6 +419,7 @@ class Capture:
         depsgraph = depsgraph_of(scene)
         self.air.sample(depsgraph)
         self.fields.sample(depsgraph)
+        self.gravity.append(gravity_of(scene))
         for name, body in self.names.items():
             obj = scene.objects.get(name)
             if obj is None:
@@ -360,6 +427,7 @@ class Capture:
             if name in self.matrices:
                 matrix = np.array(obj.evaluated_get(depsgraph).matrix_world)
                 self.matrices[name].append(matrix)
+                self.pressures[name].append(pressure_of(obj))
             if not self.follows(name):
                 continue
             taken, first = snapshot(obj, depsgraph), self.snapshots[name]
@@ -397,7 +465,9 @@ class Capture:
                 if part.name == body:
                     part.sequence = target.name
         self.writers = {}
-        self.input.wind, self.input.fields = self.air.wind(), self.fields.all()
+        self.input.wind, self.input.fields, self.input.gravity = self.air.wind(), self.fields.all(), self.gravity
+        for name in self.cloths:
+            next(c for c in self.input.cloths if c.name == self.names[name]).pressures = self.pressures[name]
         self.write_meshes(self.folder)
         (self.folder / "scene.toml").write_text(scene_toml(self.input), encoding="utf-8")
         objects = []
@@ -407,11 +477,13 @@ class Capture:
                 matrices = matrices[:1]
             objects.append({"object": name, "body": self.names[name], "matrices": matrices.tolist()})
         files = [f"{body}.obj" for body in self.names.values()] + ["scene.toml"]
+        files += [maps.map_file(body, what) for name, body in self.names.items() for what, _ in self.painted(name)]
         files += [c.rest_mesh for c in self.input.cloths if c.rest_mesh]
         files += [part.pin for part in self.input.cloths if part.pin]
         files += [part.sequence for part in self.input.colliders if part.sequence]
         return {"version": 1, "scene": self.scene_name, "frame_start": self.first, "frames": self.last - self.first,
-                "scale": self.scale, "objects": objects, "files": files}
+                "scale": self.scale, "objects": objects, "files": files,
+                "names": {body: name for name, body in self.names.items()}}
 
     def abandon(self):
         for name, writer in self.writers.items():

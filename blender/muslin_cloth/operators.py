@@ -1,7 +1,9 @@
 """The operators. A button starts a bake in the background; a call from a script blocks until the bake is done."""
 
 import bpy
-from bpy.types import Operator
+from bl_operators.presets import AddPresetBase
+from bpy.props import IntProperty
+from bpy.types import Menu, Operator
 
 from . import bake_state as bs
 from . import playback, worker
@@ -118,6 +120,33 @@ class MUSLIN_OT_check(Operator):
         return {"FINISHED"}
 
 
+class MUSLIN_OT_select_crossing(Operator):
+    bl_idname = "muslin.select_crossing"
+    bl_label = "Select Crossing Faces"
+    bl_description = "Select the faces of this mesh that cross something in the first frame"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        session = baking(context.scene) if context.scene else None
+        return session is not None and is_mesh(context) and bool(session.crossing.get(context.object.name))
+
+    def execute(self, context):
+        obj = context.object
+        faces = baking(context.scene).crossing[obj.name]
+        if faces[-1] >= len(obj.data.polygons):
+            self.report({"WARNING"}, "A modifier above Muslin changes the faces: they cannot be selected in this mesh")
+            return {"CANCELLED"}
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_mode(type="FACE")
+        bpy.ops.mesh.select_all(action="DESELECT")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        for face in faces:
+            obj.data.polygons[face].select = True
+        bpy.ops.object.mode_set(mode="EDIT")
+        return {"FINISHED"}
+
+
 class MUSLIN_OT_report(Operator):
     bl_idname = "muslin.report"
     bl_label = "Report"
@@ -191,6 +220,49 @@ class MUSLIN_OT_remove(RoleOperator):
         return {"FINISHED"}
 
 
+class MUSLIN_OT_map_add(RoleOperator):
+    bl_idname = "muslin.map_add"
+    bl_label = "Add Map"
+    bl_description = "Let a number of the fabric vary with the weights of a vertex group"
+
+    def execute(self, context):
+        entry = context.object.muslin.maps.add()
+        if context.object.vertex_groups.active:
+            entry.group = context.object.vertex_groups.active.name
+        return {"FINISHED"}
+
+
+class MUSLIN_OT_map_remove(RoleOperator):
+    bl_idname = "muslin.map_remove"
+    bl_label = "Remove Map"
+    bl_description = "Let the number be the same everywhere"
+
+    index: IntProperty(options={"HIDDEN"})
+
+    def execute(self, context):
+        context.object.muslin.maps.remove(self.index)
+        return {"FINISHED"}
+
+
+class MUSLIN_MT_presets(Menu):
+    bl_label = "Fabric Presets"
+    preset_subdir = "muslin_cloth"
+    preset_operator = "script.execute_preset"
+    draw = Menu.draw_preset
+
+
+class MUSLIN_OT_preset_add(AddPresetBase, Operator):
+    bl_idname = "muslin.preset_add"
+    bl_label = "Add Fabric Preset"
+    bl_description = "Save fabric, sliders and stretch limit under a name, or remove a saved one"
+    preset_menu = "MUSLIN_MT_presets"
+    preset_subdir = "muslin_cloth"
+    preset_defines = ["muslin = bpy.context.object.muslin"]
+    preset_values = [f"muslin.{name}" for name in (
+        "model", "fabric", "weight_factor", "stiffness_factor", "bending_factor", "damping_factor", "thickness",
+        "use_stretch_limit", "stretch_limit", "use_friction", "friction")]
+
+
 class MUSLIN_OT_suggest_width(RoleOperator):
     bl_idname = "muslin.suggest_width"
     bl_label = "Suggest"
@@ -210,8 +282,8 @@ class MUSLIN_OT_suggest_width(RoleOperator):
 
 
 CLASSES = (MUSLIN_OT_bake, MUSLIN_OT_bake_from_current, MUSLIN_OT_resume, MUSLIN_OT_cancel, MUSLIN_OT_free,
-           MUSLIN_OT_check, MUSLIN_OT_report, MUSLIN_OT_cloth_add, MUSLIN_OT_collider_add, MUSLIN_OT_remove,
-           MUSLIN_OT_suggest_width)
+           MUSLIN_OT_check, MUSLIN_OT_select_crossing, MUSLIN_OT_report, MUSLIN_OT_cloth_add, MUSLIN_OT_collider_add, MUSLIN_OT_remove,
+           MUSLIN_OT_map_add, MUSLIN_OT_map_remove, MUSLIN_MT_presets, MUSLIN_OT_preset_add, MUSLIN_OT_suggest_width)
 
 
 def register():

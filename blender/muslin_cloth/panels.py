@@ -56,18 +56,30 @@ class PHYSICS_PT_muslin(MuslinPanel, Panel):
             column = layout.column()
             column.use_property_split = True
             column.enabled = scene.muslin.use_contact
-            draw_friction(column, obj.muslin)
+            draw_surface(column, obj.muslin)
             return
         session = baking(scene)
         state = session.state if session else bs.State()
         draw_state(layout, scene, session, state, width)
         draw_buttons(layout, context, state)
+        if gravity_size(scene) and not 0.1 < gravity_size(scene) / 9.8 < 10:
+            paragraph(layout, f"Unit Scale makes gravity {gravity_size(scene):.3g} m/s², far from 9.8: set it under "
+                              "Scene > Gravity", width, "ERROR")
         if session:
             for notice in session.notices:
                 if notice.level == ERROR and notice.text in state.problem:
                     continue  # said above already
                 where = f"{notice.object}: " if notice.object and notice.object != obj.name else ""
                 paragraph(layout, where + notice.text, width, ICONS[notice.level], notice.level == ERROR)
+            crossing = session.crossing.get(obj.name)
+            if crossing:
+                layout.operator("muslin.select_crossing", icon="RESTRICT_SELECT_OFF",
+                                text=f"Select {counted(len(crossing), 'Crossing Face')}")
+
+
+def gravity_size(scene):
+    """[m/s²]; 0: none."""
+    return scene.gravity.length * unit_scale(scene) if scene.use_gravity else 0
 
 
 def draw_state(layout, scene, session, state, width):
@@ -135,9 +147,17 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
         about = fabrics.description(m.fabric)
         if about:
             paragraph(layout, about, context.region.width, "INFO")
+        row = layout.row(align=True)
+        row.menu("MUSLIN_MT_presets", text="Presets")
+        row.operator("muslin.preset_add", text="", icon="ADD")
+        row.operator("muslin.preset_add", text="", icon="REMOVE").remove_active = True
         guesses = fabrics.guesses(m.fabric, m.model.lower())
         if guesses:
             paragraph(layout, guesses, context.region.width, "QUESTION")
+        column = layout.column(align=True)
+        for name in ("weight_factor", "stiffness_factor", "bending_factor", "damping_factor"):
+            if name != "bending_factor" or m.model == "SHELL":
+                column.prop(m, name)
         layout.prop(m, "thickness")
         if m.model == "LATTICE":
             row = layout.row(align=True)
@@ -148,17 +168,24 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
             layout.prop(m, "use_stretch_limit")
             if m.use_stretch_limit:
                 layout.prop(m, "stretch_limit")
+            row = layout.row(heading="Pressure")
+            row.prop(m, "use_pressure", text="")
+            sub = row.row()
+            sub.enabled = m.use_pressure
+            sub.prop(m, "pressure", text="")
         column = layout.column()
         column.enabled = context.scene.muslin.use_contact
         column.prop(m, "use_self_contact")
-        draw_friction(column, m)
+        draw_surface(column, m)
         draw_counts(layout, context, m)
 
 
-def draw_friction(column, m):
-    column.prop(m, "use_friction")
-    if m.use_friction:
-        column.prop(m, "friction")
+def draw_surface(column, m):
+    """What both cloth and colliders have."""
+    for use, value in (("use_friction", "friction"), ("use_layer", "layer")):
+        column.prop(m, use)
+        if getattr(m, use):
+            column.prop(m, value)
 
 
 def draw_counts(layout, context, m):
@@ -170,6 +197,25 @@ def draw_counts(layout, context, m):
     if counts and counts["model"] == m.model.lower():
         what = counted(counts["voxels"], "voxel") if m.model == "LATTICE" else counted(counts["triangles"], "triangle")
         layout.label(text=f"Checked: {what}, {counted(counts['vertices'], 'vertex', 'vertices')}, {counts['mass']:.4g} kg")
+
+
+class PHYSICS_PT_muslin_maps(ClothPanel, Panel):
+    bl_label = "Maps"
+    bl_parent_id = "PHYSICS_PT_muslin"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, obj = self.layout, context.object
+        for index, entry in enumerate(obj.muslin.maps):
+            box = layout.box().column(align=True)
+            row = box.row(align=True)
+            row.prop(entry, "what", text="")
+            row.prop_search(entry, "group", obj, "vertex_groups", text="")
+            row.operator("muslin.map_remove", text="", icon="X").index = index
+            row = box.row(align=True)
+            row.prop(entry, "low")
+            row.prop(entry, "high")
+        layout.operator("muslin.map_add", icon="ADD")
 
 
 class PHYSICS_PT_muslin_pins(ClothPanel, Panel):
@@ -225,12 +271,11 @@ class PHYSICS_PT_muslin_scene(ClothPanel, Panel):
         column = layout.column()
         column.enabled = m.use_contact
         column.prop(m, "friction")
+        column.prop(m, "contact_distance")
+        column.prop(m, "tangled")
         layout.prop(m, "keep_states")
-        gravity = scene.gravity.length * unit_scale(scene) if scene.use_gravity else 0
+        gravity = gravity_size(scene)
         layout.label(text=f"Gravity {gravity:.4g} m/s²" if gravity else "No gravity", icon="FORCE_FORCE")
-        if gravity and not 0.1 < gravity / 9.8 < 10:
-            paragraph(layout, "Unit Scale makes gravity far from 9.8 m/s²: set it under Scene > Gravity",
-                      context.region.width, "ERROR")
         names = [o.name for o in cloth_objects(scene)]
         layout.label(text="One bake of: " + ", ".join(names), icon="MOD_CLOTH")
         for notice in fields_notices(scene):
@@ -251,7 +296,7 @@ def draw_add(self, context):
         column.operator("muslin.remove", text=label, icon="X")
 
 
-CLASSES = (PHYSICS_PT_muslin, PHYSICS_PT_muslin_cloth, PHYSICS_PT_muslin_pins, PHYSICS_PT_muslin_scene)
+CLASSES = (PHYSICS_PT_muslin, PHYSICS_PT_muslin_cloth, PHYSICS_PT_muslin_maps, PHYSICS_PT_muslin_pins, PHYSICS_PT_muslin_scene)
 
 
 def register():

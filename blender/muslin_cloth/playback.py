@@ -117,11 +117,23 @@ class Playback:
         self._writers = {}
 
     def attach(self, scene):
-        """Lets the modifiers play."""
+        """Lets the modifiers play: of the objects that play a bake already, whatever they are called by now, and else of
+        the one with the name that it had."""
         for item in self.description["objects"]:
-            obj = scene.objects.get(item["object"])
-            if obj and obj.type == "MESH" and obj.muslin.role == "CLOTH" and self.path(item["body"]).exists():
-                attach(obj, self.path(item["body"]), self.description["frame_start"])
+            path = self.path(item["body"])
+            if not path.exists():
+                continue
+            named = scene.objects.get(item["object"])
+            for obj in players(scene, path) or [named]:
+                if obj and obj.type == "MESH" and obj.muslin.role == "CLOTH":
+                    attach(obj, path, self.description["frame_start"])
+
+
+def players(scene, path):
+    """The objects whose modifier plays this file."""
+    caches = ((obj, modifier_of(obj)) for obj in scene.objects if obj.type == "MESH")
+    return [obj for obj, cache in caches
+            if cache and cache.filepath and pathlib.Path(bpy.path.abspath(cache.filepath)) == path]
 
 
 def ensure_modifier(obj):

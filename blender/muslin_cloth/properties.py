@@ -2,7 +2,7 @@
 too come from its schema (keys.py)."""
 
 import bpy
-from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
+from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
                        StringProperty)
 
 from . import fabrics, keys
@@ -16,6 +16,25 @@ def drop_estimate(props, _context):
     props.area = 0
 
 
+def factor(name, of_what):
+    return FloatProperty(name=name, default=1, min=0, soft_min=0.1, soft_max=10, precision=2,
+                         description=f"{of_what}, as a multiple of that of the fabric")
+
+
+class MuslinMap(bpy.types.PropertyGroup):
+    what: EnumProperty(
+        name="Number", description="What varies",
+        items=[("WEIGHT", "Weight", "Mass per area or volume, as a multiple of that of the fabric"),
+               ("STIFFNESS", "Stiffness", "Of stretch and shear, as a multiple of that of the fabric"),
+               ("BENDING", "Bending", "Stiffness of bending of cloth, as a multiple of that of the fabric"),
+               ("DAMPING", "Damping", "As a multiple of that of the fabric"),
+               ("SHRINK", "Shrink", "Length of cloth at rest over that of the mesh: 0.8 is tight, 1.2 loose")])
+    group: StringProperty(name="Vertex Group", description="Its weights, from 0 to 1, set where the number lies between "
+                                                           "From and To")
+    low: FloatProperty(name="From", default=1, min=0, soft_max=10, precision=2, description="Where the weight is 0")
+    high: FloatProperty(name="To", default=1, min=0, soft_max=10, precision=2, description="Where the weight is 1")
+
+
 class MuslinObject(bpy.types.PropertyGroup):
     role: EnumProperty(
         name="Role", items=[("NONE", "None", ""), ("CLOTH", "Cloth", "Simulated by muslin"),
@@ -27,6 +46,11 @@ class MuslinObject(bpy.types.PropertyGroup):
     fabric: StringProperty(
         name="Fabric", default="cotton", description="A material of muslin, or the path of a material file",
         search=suggest_fabrics, search_options={"SUGGESTION"})
+    weight_factor: factor("Weight", "Mass per area or volume")
+    stiffness_factor: factor("Stiffness", "Stiffness of stretch and shear")
+    bending_factor: factor("Bending", "Stiffness of bending of cloth")
+    damping_factor: factor("Damping", "Damping of stretch and bending")
+    maps: CollectionProperty(type=MuslinMap)
     thickness: FloatProperty(
         name="Thickness", subtype="DISTANCE", min=0, soft_max=1, precision=4, update=drop_estimate,
         description=f"Of cloth: {keys.sentence('body', 'thickness', model='shell')}. Of a solid: "
@@ -34,7 +58,8 @@ class MuslinObject(bpy.types.PropertyGroup):
     voxel_width: FloatProperty(
         name="Voxel Width", subtype="DISTANCE", min=0, soft_max=10, precision=4,
         description=f"{keys.sentence('body', 'voxel_width')}. 0 uses the default")
-    pin_group: StringProperty(name="Pin Group", description="Vertices of weight 0.5 or more are held")
+    pin_group: StringProperty(
+        name="Pin Group", description="Vertices of weight 0.5 or more are held. Soft pins hold by the weight")
     pin_animated: BoolProperty(
         name="Follow Animation", default=True,
         description="Held vertices follow shape keys, armatures and other modifiers above the Muslin modifier, and "
@@ -61,6 +86,14 @@ class MuslinObject(bpy.types.PropertyGroup):
         **keys.limits("body", "stretch_limit"),
         description=f"{keys.sentence('body', 'stretch_limit')}. Keeps weak fabrics from sagging where they are held; "
                     "less than 1.01 takes long")
+    use_layer: BoolProperty(
+        name="Layer", description="Where cloth crosses something else at the start, what has a higher layer belongs outside")
+    layer: IntProperty(name="Layer", default=1, soft_max=10, **keys.limits("body", "layer"),
+                       description=keys.sentence("body", "layer"))
+    use_pressure: BoolProperty(name="Pressure", description="Inflates cloth that is closed or nearly closed")
+    pressure: FloatProperty(
+        name="Pressure", default=100, soft_min=-1000, soft_max=1000,
+        description=f"{keys.sentence('pressure', 'pressure')}. May be animated")
     rest_shape: EnumProperty(
         name="Rest Shape", description="The stress-free shape",
         items=[("START", "At the Start", "The mesh in the first frame"),
@@ -96,6 +129,16 @@ class MuslinScene(bpy.types.PropertyGroup):
     friction: FloatProperty(
         name="Friction", default=keys.default("contact", "friction"), soft_max=1,
         **keys.limits("contact", "friction"), description=keys.sentence("contact", "friction"))
+    contact_distance: FloatProperty(
+        name="Contact Distance", subtype="DISTANCE", min=0, soft_max=0.1, precision=4,
+        description="Surfaces repel each other where the gap is below it. 0: 1/500 of the size of each object, and at most "
+                    "a fifth of its edges")
+    tangled: EnumProperty(
+        name="Tangled Start", default=keys.default("contact", "tangled").upper(),
+        description="What is done with surfaces that cross at the start",
+        items=[("REFUSE", "Refuse", "Report the places and do not bake"),
+               ("REPAIR", "Repair", "Pull them apart before the first frame"),
+               ("IGNORE", "Ignore", "Leave them free of each other until they part")])
     keep_states: BoolProperty(
         name="Keep States", default=True,
         description="Keep the state of every frame, to continue a bake from any of them: 96 bytes per vertex and frame")
@@ -108,17 +151,26 @@ class MuslinScene(bpy.types.PropertyGroup):
         """(first, last) frame of the bake."""
         if self.use_scene_range:
             return scene.frame_start, scene.frame_end
-        return self.frame_start, max(self.frame_end, self.frame_start)
+        return self.frame_start, self.frame_end
 
 
-CLASSES = (MuslinObject, MuslinScene)
+CLASSES = (MuslinMap, MuslinObject, MuslinScene)
+
+
+def let_overrides_keep(cls):
+    """Makes the properties of a class editable on library overrides, which then keep them when the file is opened."""
+    for kind in cls.__annotations__.values():
+        kind.keywords["override"] = {"LIBRARY_OVERRIDABLE"}
+        if kind.function is CollectionProperty:
+            kind.keywords["override"] = {"LIBRARY_OVERRIDABLE", "USE_INSERTION"}
 
 
 def register():
     for cls in CLASSES:
+        let_overrides_keep(cls)
         bpy.utils.register_class(cls)
-    bpy.types.Object.muslin = PointerProperty(type=MuslinObject)
-    bpy.types.Scene.muslin = PointerProperty(type=MuslinScene)
+    bpy.types.Object.muslin = PointerProperty(type=MuslinObject, override={"LIBRARY_OVERRIDABLE"})
+    bpy.types.Scene.muslin = PointerProperty(type=MuslinScene, override={"LIBRARY_OVERRIDABLE"})
 
 
 def unregister():

@@ -12,20 +12,33 @@ Vec = Tuple[float, float, float]
 
 
 @dataclass
+class Painted:
+    """A number that a map varies over the body."""
+    file: str  # of one weight a vertex, from 0 to 1
+    low: float  # where the weight is 0
+    high: float  # where it is 1
+
+
+@dataclass
 class Cloth:
     name: str  # of the body: names files
     model: str  # "shell" | "lattice"
     material: str  # a name of the library or the path of a material file
+    numbers: Dict[str, object] = field(default_factory=dict)  # of the material, in place of its own: float, curve, Painted
+    own_numbers: Dict[str, object] = field(default_factory=dict)  # of the body itself
     thickness: float = 0.0  # [m]; 0: muslin's default. Of a shell as contact sees it
     voxel_width: float = 0.0  # [m], of a lattice
     rest_mesh: str = ""  # file name
     pin: str = ""  # file name of the sequence; "": stands still
     pinned: bool = False
     pin_stiffness: Optional[float] = None  # of soft pins, all together [N/m]; None: they hold exactly
+    pin_weight: Optional[Painted] = None  # of soft pins; None: all have weight 1
     release: Optional[float] = None  # when the pin lets go [s]
     self_contact: bool = True
     friction: Optional[float] = None  # None: the scene's
     stretch_limit: Optional[float] = None  # of a shell: length over length at rest; None: no limit
+    layer: Optional[int] = None  # order outward, of cloth and colliders
+    pressures: List[float] = field(default_factory=list)  # inside a shell: one, or one a frame [Pa]; empty: none
 
 
 @dataclass
@@ -33,6 +46,7 @@ class Collider:
     name: str
     sequence: str = ""  # file name; "": stands still
     friction: Optional[float] = None  # None: the scene's
+    layer: Optional[int] = None
 
 
 @dataclass
@@ -61,7 +75,7 @@ class SceneInput:
     frames: int  # last frame, from 0
     frame_rate: float
     steps_per_frame: Optional[int]  # None: automatic
-    gravity: Vec = (0.0, 0.0, 0.0)  # [m/s²]
+    gravity: List[Vec] = field(default_factory=list)  # one, or one a frame [m/s²]; empty: none
     air_density: float = keys.default("force", "air_density")  # [kg/m³]; 0: no air
     wind: Optional[Wind] = None
     fields: List[Field] = field(default_factory=list)
@@ -70,6 +84,8 @@ class SceneInput:
     contact: bool = True  # of cloth with itself, with other cloth and with colliders
     effort: str = keys.default("solver", "effort")
     friction: float = keys.default("contact", "friction")  # of what has none of its own
+    distance: float = 0.0  # contact distance [m]; 0: muslin's default
+    tangled: str = keys.default("contact", "tangled")
 
 
 def body_names(names):
@@ -99,6 +115,30 @@ def vector(v):
     return "[" + ", ".join(number(x) for x in v) + "]"
 
 
+def varied(x):
+    """A number, a measured curve, or a number that a map varies."""
+    if isinstance(x, Painted):
+        return f"{{ map = {quoted(x.file)}, from = {number(x.low)}, to = {number(x.high)} }}"
+    return "[" + ", ".join(vector(point) for point in x) + "]" if isinstance(x, list) else number(x)
+
+
+def keyframes(values, text, frame_rate):
+    keys_ = ", ".join(f"{{ time = {number(f / frame_rate)}, value = {text(v)} }}" for f, v in enumerate(values))
+    return f"keyframes = [{keys_}]"
+
+
+def over_time(key, values, text, frame_rate):
+    """The key, if the values of all frames are equal, or else `keyframes` beside it."""
+    constant = all(v == values[0] for v in values)
+    return f"{key} = {text(values[0])}" if constant else keyframes(values, text, frame_rate)
+
+
+def number_over_time(key, values, frame_rate):
+    """The key as a number, or as a table of keyframes if the values of the frames differ."""
+    constant = all(v == values[0] for v in values)
+    return f"{key} = {number(values[0])}" if constant else f"{key} = {{ {keyframes(values, number, frame_rate)} }}"
+
+
 def scene_toml(scene: SceneInput, moving: bool = True) -> str:
     """`moving` = False leaves sequences out: the scene as it stands at the first frame, for a check."""
     lines = [f"title = {quoted(scene.title)}", "", "[time]"]
@@ -113,6 +153,8 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
             lines.append("self_contact = false")
         if scene.contact and cloth.friction is not None:
             lines.append(f"friction = {number(cloth.friction)}")
+        if cloth.layer is not None:
+            lines.append(f"layer = {cloth.layer}")
     for cloth in scene.cloths:
         if cloth.pinned:
             lines += ["", "[[pin]]"] + _pin(cloth, moving)
@@ -123,10 +165,18 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
             lines.append(f"sequence = {quoted(collider.sequence)}")
         if collider.friction is not None:
             lines.append(f"friction = {number(collider.friction)}")
+        if collider.layer is not None:
+            lines.append(f"layer = {collider.layer}")
     if scene.contact:
-        lines += ["", "[contact]", f"friction = {number(scene.friction)}"]
-    if any(scene.gravity):
-        lines += ["", "[[force]]", 'type = "gravity"', f"acceleration = {vector(scene.gravity)}"]
+        lines += ["", "[contact]", f"friction = {number(scene.friction)}", f"tangled = {quoted(scene.tangled)}"]
+        if scene.distance > 0:
+            lines.append(f"distance = {number(scene.distance)}")
+    if any(any(g) for g in scene.gravity):
+        lines += ["", "[[force]]", 'type = "gravity"', over_time("acceleration", scene.gravity, vector, scene.frame_rate)]
+    for cloth in scene.cloths:
+        if any(cloth.pressures):
+            lines += ["", "[[pressure]]", f"body = {quoted(cloth.name)}",
+                      number_over_time("pressure", cloth.pressures, scene.frame_rate)]
     if scene.air_density > 0:
         lines += ["", "[[force]]", 'type = "wind"'] + _wind(scene)
     for each in scene.fields:
@@ -137,7 +187,12 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
 
 def _body(cloth):
     lines = [f"name = {quoted(cloth.name)}", f"mesh = {quoted(cloth.name + '.obj')}", f'model = "{cloth.model}"']
-    lines.append(f"material = {quoted(cloth.material)}")
+    if cloth.numbers:
+        changed = "".join(f", {key} = {varied(x)}" for key, x in cloth.numbers.items())
+        lines.append(f"material = {{ base = {quoted(cloth.material)}{changed} }}")
+    else:
+        lines.append(f"material = {quoted(cloth.material)}")
+    lines += [f"{key} = {varied(x)}" for key, x in cloth.own_numbers.items()]
     if cloth.voxel_width > 0:
         lines.append(f"voxel_width = {number(cloth.voxel_width)}")
     if cloth.thickness > 0:
@@ -156,6 +211,8 @@ def _pin(cloth, moving):
         lines.append(f"sequence = {quoted(cloth.pin)}")
     if cloth.pin_stiffness is not None:
         lines.append(f"stiffness = {number(cloth.pin_stiffness)}")
+    if cloth.pin_weight is not None:
+        lines.append(f"weight = {varied(cloth.pin_weight)}")
     if cloth.release is not None:
         lines.append(f"until = {number(cloth.release)}")
     return lines
@@ -163,13 +220,8 @@ def _pin(cloth, moving):
 
 def _wind(scene):
     wind = scene.wind or Wind([(0.0, 0.0, 0.0)])
-    lines = [f"air_density = {number(scene.air_density)}"]
-    if all(v == wind.velocities[0] for v in wind.velocities):
-        lines.append(f"velocity = {vector(wind.velocities[0])}")
-    else:
-        keys = ",\n".join(f"  {{ time = {number(f / scene.frame_rate)}, value = {vector(v)} }}"
-                          for f, v in enumerate(wind.velocities))
-        lines.append(f"keyframes = [\n{keys},\n]")
+    lines = [f"air_density = {number(scene.air_density)}",
+             over_time("velocity", wind.velocities, vector, scene.frame_rate)]
     if wind.gust > 0:
         lines += [f"gust = {number(wind.gust)}", f"gust_length = {number(wind.gust_length)}", f"seed = {wind.seed}"]
     return lines
@@ -177,12 +229,8 @@ def _wind(scene):
 
 def _field(each, frame_rate):
     lines = [f"acts_as = {quoted(each.acts_as)}"] if each.acts_as else []
-    if each.strengths and all(s == each.strengths[0] for s in each.strengths):
-        lines.append(f"strength = {number(each.strengths[0])}")
-    elif each.strengths:
-        keyframes = ", ".join(f"{{ time = {number(f / frame_rate)}, value = {number(s)} }}"
-                              for f, s in enumerate(each.strengths))
-        lines.append(f"strength = {{ keyframes = [{keyframes}] }}")
+    if each.strengths:
+        lines.append(number_over_time("strength", each.strengths, frame_rate))
     lines.append(f"center = {vector(each.center)}")
     if each.falloff:
         lines.append("falloff = { " + ", ".join(f"{key} = {number(x)}" for key, x in each.falloff.items()) + " }")

@@ -8,7 +8,7 @@ import bpy
 
 from . import bake_state as bs
 from . import playback, worker
-from .advice import ERROR, WARNING, Notice, of_polygons, of_report, problem_line
+from .advice import ERROR, Notice, crossing_faces, in_blender, of_polygons, of_report, problem_line, warnings_of
 from .gather import Capture, Problem, cloth_objects
 from .preferences import find_program, threads
 from .scene_text import scene_toml
@@ -24,7 +24,8 @@ class Session:
         self.scene_name = scene.name
         self.state = bs.State()
         self.folder = None  # of the bake that is there or being made
-        self.notices, self.counts, self.message = [], {}, ""
+        self.notices, self.counts, self.message = [], {}, ""  # the notices of the last check and bake
+        self.crossing = {}  # object → its faces that cross something at the start
         self.capture = self.question = self.worker = self.playback = None
         self._began = (0.0, 0)  # when the worker started, and at which frame
         self._sessions_before = 0  # of the run that is resumed, until the worker has begun its own; then -1
@@ -51,6 +52,8 @@ class Session:
             problem = f"The bake was interrupted after frame {frame + description['frame_start']}; Resume continues it"
         elif worker.run_status(run) == "failed":
             problem = problem_line(worker.read_log(log)) or worker.read_run(run).get("reason", "")
+        if not alive:
+            self._read_warnings()
         self.feed(bs.Opened(frame, total, alive, problem if frame >= 0 else ""))
         self.attach()  # the file may have been saved before the bake was there
 
@@ -120,7 +123,7 @@ class Session:
     def _start_check(self):
         self._abandon()  # a check without a bake may be in work
         self._checked_only = False
-        self.notices, self.message = [], ""
+        self.notices, self.message, self.crossing = [], "", {}
         try:
             self._begin_check()
         except Problem as problem:
@@ -167,7 +170,7 @@ class Session:
             code, out, err = question.answers[-1]
             if code != 0:
                 problem = problem or in_blender(problem_line(err), names)
-            else:
+            if out:  # a start that is refused is described too
                 self._read_scene_check(json.loads(out), names, said)
         playback.remove_tree(self.capture.folder / "check")
         if errors:
@@ -177,13 +180,8 @@ class Session:
     def _read_scene_check(self, answer, names, said):
         """Counts and warnings; those `said` of the meshes have been put into Blender's words already."""
         self.counts = {names[b["name"]]: b for b in answer["bodies"] if b["name"] in names}
-        for warning in answer["warnings"]:
-            body, colon, text = warning.removeprefix("body ").partition(": ")
-            if not warning.startswith("body ") or not colon:
-                body, text = "", warning
-            if text not in said:
-                text = in_blender(text, names)
-                self.notices.append(Notice(WARNING, text[:1].upper() + text[1:], names.get(body, "")))
+        self.notices += warnings_of(answer["warnings"], names, said)
+        self.crossing = crossing_faces(answer["crossings"], names)
 
     def check(self):
         """Checks without baking."""
@@ -316,9 +314,22 @@ class Session:
             return
         log = self.worker.problem()
         self.worker = None
-        names = {o["body"]: o["object"] for o in self.playback.description["objects"]}
+        names = self._objects()
+        self._read_warnings()
         self.feed(bs.WorkerEnded(code, frame, in_blender(problem_line(log), names)))
         mark_changed()
+
+    def _objects(self):
+        """The objects of the bake and its colliders as they were called: body → name."""
+        description = self.playback.description
+        return description.get("names") or {o["body"]: o["object"] for o in description["objects"]}
+
+    def _read_warnings(self):
+        """What the run says at its end, such as what yielded or crossed."""
+        said = {n.text for n in self.notices}
+        found = warnings_of(worker.read_run(self.folder / "run").get("warnings", []), self._objects(),
+                            first_frame=self.first_frame)
+        self.notices += [n for n in found if n.text not in said]
 
     def _has_begun(self):
         """Until then the caches of a run that is resumed from an earlier frame hold frames that will be removed."""
@@ -339,40 +350,6 @@ class Session:
             self.worker.interrupt()
         if self.playback:
             self.playback.close()
-
-
-# Terms that the command line and the panel name differently.
-WORDS = (("restart the run without --resume", "use Bake, from the start"),
-         ("restart the run", "use Bake, from the start"), ("time.steps_per_frame", "Steps per Frame"),
-         ("`steps_per_frame`", "Steps per Frame"), ("`voxel_width`", "Voxel Width"), ("voxel_width", "Voxel Width"),
-         ("`thickness`", "Thickness"), (", then continue with --resume", ", then press Resume"))
-
-
-PARTS = ((".material", "Fabric"), (".voxel_width", "Voxel Width"), (".thickness", "Thickness"), (".model", "Kind"),
-         (".rest_mesh", "Rest Shape"), (".mesh", "The mesh"))
-
-
-def in_blender(problem, names):
-    """An error of muslin without the paths of files the artist never saw, bodies by their objects' names."""
-    for mark in ("scene.toml: ", "scene.toml:"):
-        if mark in problem.split("; ")[0]:
-            problem = problem.split(mark, 1)[1]
-            problem = problem.lstrip("0123456789:").lstrip()
-            break
-    for body, name in names.items():
-        mark = f"/{body}.obj: "
-        if mark in problem.split("; ")[0]:
-            problem = f"{name}: {problem.split(mark, 1)[1]}"
-    changed = "the bodies are not those of the run to resume; changed: "
-    if changed in problem:
-        settings = problem.split(changed)[1].split("; ")[0].split(", ")
-        parts = dict.fromkeys(next((panel for key, panel in PARTS if key in s), s) for s in settings)
-        return f"{', '.join(parts)} changed since the first frame; undo the change, or use Bake, from the start"
-    for body, name in names.items():
-        problem = problem.replace(f"`{body}`", f"\"{name}\"")
-    for word, in_panel in WORDS:
-        problem = problem.replace(word, in_panel)
-    return problem
 
 
 def sessions_of(run):

@@ -20,6 +20,11 @@ PROGRAM = "muslin.exe" if sys.platform == "win32" else "muslin"
 def find_program(preferred=""):
     """Returns the program of the preferences, or beside the add-on, or on the PATH; "" if there is none."""
     bundled = pathlib.Path(__file__).parent / "bin" / PROGRAM
+    if bundled.is_file() and not os.access(bundled, os.X_OK):  # installers of Blender unpack without permissions
+        try:
+            bundled.chmod(0o755)
+        except OSError:
+            pass
     for candidate in (preferred, str(bundled)):
         if candidate and os.path.isfile(candidate) and os.access(candidate, os.X_OK):
             return os.path.abspath(candidate)

@@ -18,7 +18,7 @@ import numpy as np
 from support import load
 
 axes, point_cache, scene_text = load("axes"), load("point_cache"), load("scene_text")
-advice, worker, fabrics, keys = load("advice"), load("worker"), load("fabrics"), load("keys")
+advice, worker, fabrics, keys, maps = load("advice"), load("worker"), load("fabrics"), load("keys"), load("maps")
 
 PROGRAM = os.environ.get("MUSLIN_PROGRAM", str(pathlib.Path(__file__).parents[2] / "build" / "release" / "muslin"))
 
@@ -46,7 +46,7 @@ class Keys(unittest.TestCase):
         def prop(**settings):
             made.append(settings)
 
-        kinds = ("Bool", "Enum", "Float", "Int", "Pointer", "String")
+        kinds = ("Bool", "Collection", "Enum", "Float", "Int", "Pointer", "String")
         bpy = types.ModuleType("bpy")
         bpy.types = types.SimpleNamespace(PropertyGroup=object)
         bpy.props = types.ModuleType("bpy.props")
@@ -143,7 +143,7 @@ class SceneText(Scratch):
 
     def scene(self):
         return scene_text.SceneInput(
-            title='A "quoted" title\n', frames=12, frame_rate=23.976, steps_per_frame=3, gravity=(0, -9.81, 0),
+            title='A "quoted" title\n', frames=12, frame_rate=23.976, steps_per_frame=3, gravity=[(0, -9.81, 0)],
             wind=scene_text.Wind([(1, 0, 0), (2, 0, 0)], gust=0.5, gust_length=2, seed=7),
             cloths=[scene_text.Cloth("a b", "shell", "cotton", pinned=True, pin="a b.pc2", rest_mesh="a b.obj"),
                     scene_text.Cloth("solid", "lattice", "rubber", thickness=0.2, voxel_width=0.2, pinned=True,
@@ -193,6 +193,33 @@ class SceneText(Scratch):
         told = tomllib.loads(scene_text.scene_toml(scene))["force"][1:]
         self.assertEqual([f["type"] for f in told], ["radial", "drag"])
 
+    def test_the_program_reads_maps_sliders_and_keys(self):
+        fabrics.program = PROGRAM
+        scene = self.scene()
+        cloth, solid = scene.cloths
+        cloth.numbers, cloth.own_numbers = maps.adjusted(
+            "a b", "shell", "cotton", {"weight": 2, "damping": 1}, [("bending", 1, 100), ("shrink", 1, 0.8)])
+        solid.numbers, _ = maps.adjusted("solid", "lattice", "rubber", {"stiffness": 0.5}, [])
+        cloth.pin_stiffness, cloth.pin_weight = 30, scene_text.Painted(maps.map_file("a b", "pins"), 0, 1)
+        cloth.layer, scene.distance, scene.tangled = 2, 0.004, "refuse"
+        scene.colliders = [scene_text.Collider("floor", layer=0)]
+        self.square("floor", height=-1)
+        scene.gravity = [(0, -9.81, 0), (0, 0, 0)]
+        for what in ("bending", "shrink", "pins"):
+            (self.folder / maps.map_file("a b", what)).write_text(maps.weights_text([0, 0.25, 0.5, 1]))
+        code, out, err = self.check(scene)
+        self.assertEqual((code, err), (0, ""))
+        told = json.loads(out)["bodies"][0]
+        self.assertAlmostEqual(told["mass"], 2 * 0.1503, places=6)
+        varied = {m["key"]: m for m in told["maps"]}
+        base = fabrics.numbers("cotton", "shell")
+        self.assertLessEqual({"bending_warp", "bending_weft", "bending_bias", "rest_scale_warp"}, set(varied))
+        self.assertAlmostEqual(varied["bending_warp"]["max"] / base["bending_warp"], 100)
+        told = tomllib.loads(scene_text.scene_toml(scene))
+        self.assertEqual(told["force"][0]["keyframes"][1], {"time": 1 / 23.976, "value": [0, 0, 0]})
+        self.assertEqual((told["body"][0]["layer"], told["collider"][0]["layer"]), (2, 0))
+        self.assertEqual(told["contact"], {"friction": 0.3, "tangled": "refuse", "distance": 0.004})
+
     def test_it_says_what_was_asked(self):
         scene = self.scene()
         told = tomllib.loads(scene_text.scene_toml(scene))
@@ -203,7 +230,7 @@ class SceneText(Scratch):
         self.assertEqual(told["force"][1]["gust"], 0.5)
         scene.wind = scene_text.Wind([(3, 0, 0)] * 5)
         self.assertEqual(tomllib.loads(scene_text.scene_toml(scene))["force"][1]["velocity"], [3, 0, 0])
-        self.assertEqual(told["contact"], {"friction": 0.3})
+        self.assertEqual(told["contact"], {"friction": 0.3, "tangled": "repair"})
         self.assertEqual(told["time"]["steps_per_frame"], 3)
         self.assertEqual(told["solver"], {"effort": "normal"})
         scene.steps_per_frame, scene.effort = None, "exact"
@@ -225,7 +252,7 @@ class SceneText(Scratch):
         told = tomllib.loads(scene_text.scene_toml(scene))
         self.assertFalse({"collider", "contact"} & set(told))
         self.assertEqual([b["contact"] for b in told["body"]], [False, False])
-        scene.wind, scene.air_density, scene.gravity = None, 0, (0, 0, 0)
+        scene.wind, scene.air_density, scene.gravity = None, 0, [(0, 0, 0)] * 2
         self.assertNotIn("force", tomllib.loads(scene_text.scene_toml(scene)))
 
     def test_a_mesh_keeps_its_order_and_can_be_turned_around(self):
@@ -310,6 +337,49 @@ class Estimates(Scratch):
         self.assertAlmostEqual(estimate / built, 1, delta=0.2)
 
 
+class Maps(unittest.TestCase):
+    def setUp(self):
+        fabrics.program = PROGRAM
+
+    def test_sliders_multiply_numbers_and_curves(self):
+        base = fabrics.numbers("cotton", "shell")
+        self.assertEqual(maps.adjusted("c", "shell", "cotton", {"weight": 1, "bending": 1}, []), ({}, {}))
+        numbers, own = maps.adjusted("c", "shell", "cotton", {"stiffness": 3, "damping": 0.5}, [])
+        self.assertEqual(own, {})
+        for key, factor in (("membrane_warp", 3), ("membrane_shear", 3), ("stiffness_damping", 0.5)):
+            self.assertEqual(numbers[key], factor * base[key])
+        self.assertFalse({"areal_density", "bending_warp", "stretch_limit"} & set(numbers))
+        curve = fabrics.numbers("11oz_black_denim", "shell")["warp_curve"]
+        numbers, _ = maps.adjusted("c", "shell", "11oz_black_denim", {"stiffness": 2}, [])
+        self.assertEqual(numbers["warp_curve"], [[x, 2 * y] for x, y in curve])
+
+    def test_a_map_of_a_slider_is_their_product(self):
+        numbers, _ = maps.adjusted("c", "shell", "cotton", {"weight": 3}, [("weight", 1, 2)])
+        base = fabrics.numbers("cotton", "shell")["areal_density"]
+        self.assertEqual(numbers, {"areal_density": scene_text.Painted("c.weight.csv", 3 * base, 2 * 3 * base)})
+
+    def test_what_does_not_fit_is_refused_with_a_remedy(self):
+        for model, fabric, factors, varied, words in (
+                ("shell", "cotton", {}, [("weight", 1, 2), ("weight", 1, 3)], "Two maps vary the weight"),
+                ("shell", "/a/mill.toml", {"weight": 2}, [], "set its sliders to 1"),
+                ("shell", "11oz_black_denim", {}, [("bending", 1, 2)], "measured curves.*choose another fabric"),
+                ("lattice", "rubber", {}, [("bending", 1, 2)], "has no bending"),
+                ("lattice", "rubber", {}, [("shrink", 1, 2)], "Only cloth shrinks")):
+            with self.assertRaisesRegex(maps.Refused, words):
+                maps.adjusted("c", model, fabric, factors, varied)
+        maps.adjusted("c", "shell", "/a/mill.toml", {"weight": 1}, [("shrink", 1, 0.9)])  # needs no numbers
+
+    def test_warnings_of_a_run_name_objects_and_frames_of_the_scene(self):
+        names = {"shirt_2": "Shirt.002"}
+        found = advice.warnings_of(
+            ["body shirt_2: a triangle was long, beyond its `stretch_limit` of 1.05, at the end of frames 3 to 5, 8 and 10",
+             "up to 4 of their vertices in frame 0", "said before"], names, {"said before"}, first_frame=100)
+        self.assertEqual([(n.level, n.object) for n in found], [("WARNING", "Shirt.002"), ("WARNING", "")])
+        self.assertEqual(found[0].text, "A triangle was long, beyond its Stretch Limit of 1.05, at the end of frames 103 to "
+                                        "105, 108 and 110")
+        self.assertEqual(found[1].text, "Up to 4 of their vertices in frame 100")
+
+
 class Package(Scratch):
     def test_the_zip_holds_the_add_on_and_is_the_same_each_time(self):
         import subprocess
@@ -384,6 +454,13 @@ class Workers(Scratch):
         mine = self.script("exit 0")
         self.assertEqual(worker.find_program(mine), mine)
         self.assertEqual(worker.find_program("/nowhere/muslin"), "", "a wrong preference is not passed over")
+        with unittest.mock.patch.object(worker, "__file__", str(self.folder / "worker.py")):
+            bundled = self.folder / "bin" / worker.PROGRAM
+            bundled.parent.mkdir()
+            bundled.write_text("#!/bin/sh\n")
+            bundled.chmod(0o644)  # as installers of Blender unpack it
+            self.assertEqual(worker.find_program(), str(bundled))
+            self.assertTrue(os.access(bundled, os.X_OK))
         fabrics.program = PROGRAM
         self.assertIn("cotton", fabrics.names("shell"))
         self.assertIn("rubber", fabrics.names("lattice"))

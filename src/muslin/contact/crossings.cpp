@@ -1,7 +1,9 @@
 #include "muslin/contact/crossings.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -136,6 +138,19 @@ std::string describe(const ContactModel& model, const Crossing& c) {
   if (c.kind == Crossing::Kind::beneath) return fmt::format("{} lies beneath {} {}", first, second, near);
   return fmt::format("{} and {} are closer to each other than their thickness allows {}", first, second,
                      near);
+}
+
+std::string describe_bodies(const ContactModel& model, std::span<const Crossing> found) {
+  std::map<std::pair<int, int>, int> counts;
+  for (const Crossing& c : found) ++counts[std::minmax(c.first_body, c.second_body)];
+  std::string list;
+  for (const auto& [bodies, count] : counts) {
+    const std::string first = body_name(model, bodies.first);
+    const std::string other =
+        bodies.first == bodies.second ? " with itself" : " and " + body_name(model, bodies.second);
+    list += fmt::format("{}{} of {}{}", list.empty() ? "" : ", ", count, first, other);
+  }
+  return list;
 }
 
 std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found) {

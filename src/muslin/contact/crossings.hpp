@@ -42,6 +42,10 @@ std::vector<Crossing> one_of_each_pair(const ContactModel& model, std::span<cons
 /// Returns one line, such as: face 12 of "cloth" crosses face 3 of "table" near (0.1, 0.2, 0.3) m.
 std::string describe(const ContactModel& model, const Crossing& crossing);
 
+/// Returns the bodies with their numbers of crossings, such as: 60 of "shirt" and "arm", 2 of "shirt" with
+/// itself.
+std::string describe_bodies(const ContactModel& model, std::span<const Crossing> found);
+
 /// Returns advice on removing the crossings: move bodies apart, or weld a mesh with coincident vertices.
 std::string advice(const ContactModel& model, ConstVectors q, std::span<const Crossing> found);
 

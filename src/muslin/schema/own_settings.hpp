@@ -2,6 +2,7 @@
 #pragma once
 
 #include <any>
+#include <typeinfo>
 
 namespace muslin {
 
@@ -17,7 +18,7 @@ class OwnSettings {
   /// Returns them for writing; those of another type are replaced by the defaults of T.
   template <class T>
   T& as() {
-    if (std::any_cast<T>(&value_) == nullptr) value_ = T();
+    if (value_.type() != typeid(T)) value_ = T();
     return std::any_cast<T&>(value_);
   }
 
