@@ -10,6 +10,7 @@ from . import fabrics
 from .advice import ERROR, WARNING, counted, estimate_voxels, split_problem
 from .force_fields import fields_notices, unit_scale
 from .gather import cloth_objects
+from .operators import MUSLIN_MT_presets
 from .playback import modifier_of, own_folder
 from .session import baking
 
@@ -142,15 +143,15 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
         layout, obj = self.layout, context.object
         layout.use_property_split = True
         m = obj.muslin
+        row = layout.row(align=True)
+        row.menu("MUSLIN_MT_presets", text=MUSLIN_MT_presets.bl_label)
+        row.operator("muslin.preset_add", text="", icon="ADD")
+        row.operator("muslin.preset_add", text="", icon="REMOVE").remove_active = True
         layout.prop(m, "model")
         layout.prop(m, "fabric")
         about = fabrics.description(m.fabric)
         if about:
             paragraph(layout, about, context.region.width, "INFO")
-        row = layout.row(align=True)
-        row.menu("MUSLIN_MT_presets", text="Presets")
-        row.operator("muslin.preset_add", text="", icon="ADD")
-        row.operator("muslin.preset_add", text="", icon="REMOVE").remove_active = True
         guesses = fabrics.guesses(m.fabric, m.model.lower())
         if guesses:
             paragraph(layout, guesses, context.region.width, "QUESTION")
@@ -202,7 +203,6 @@ def draw_counts(layout, context, m):
 class PHYSICS_PT_muslin_maps(ClothPanel, Panel):
     bl_label = "Maps"
     bl_parent_id = "PHYSICS_PT_muslin"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         layout, obj = self.layout, context.object

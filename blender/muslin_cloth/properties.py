@@ -17,7 +17,7 @@ def drop_estimate(props, _context):
 
 
 def factor(name, of_what):
-    return FloatProperty(name=name, default=1, min=0, soft_min=0.1, soft_max=10, precision=2,
+    return FloatProperty(name=f"{name} ×", default=1, min=0, soft_min=0.1, soft_max=10, precision=2,
                          description=f"{of_what}, as a multiple of that of the fabric")
 
 

@@ -70,10 +70,21 @@ def scene_with_a_flag():
         view.spaces[0].shading.type = "SOLID"
 
 
+def tallest():
+    return max((a for a in window().screen.areas if a.type == "PROPERTIES"), key=lambda a: a.height)
+
+
+def scroll(operator):
+    area = tallest()
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    with bpy.context.temp_override(window=window(), area=area, region=region):
+        for _ in range(15):  # lines
+            operator()
+
+
 @step
 def physics():
-    tallest = max((a for a in window().screen.areas if a.type == "PROPERTIES"), key=lambda a: a.height)
-    tallest.spaces[0].context = "PHYSICS"
+    tallest().spaces[0].context = "PHYSICS"
 
 
 @step
@@ -88,8 +99,25 @@ def added():
 
 
 @step
+def painted():
+    obj = bpy.context.view_layer.objects.active
+    entry = obj.muslin.maps.add()
+    entry.what, entry.group, entry.high = "BENDING", "pins", 20
+    obj.muslin.weight_factor = 1.5
+
+
+@step
 def settings():
     picture("2_settings")
+    scroll(bpy.ops.view2d.scroll_down)
+
+
+@step
+def lower_settings():
+    picture("2_settings_lower")
+    scroll(bpy.ops.view2d.scroll_up)
+    bpy.context.view_layer.objects.active.muslin.maps.clear()
+    bpy.context.view_layer.objects.active.muslin.weight_factor = 1
     assert bpy.ops.muslin.check("INVOKE_DEFAULT") == {"FINISHED"}
 
 
