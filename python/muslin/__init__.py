@@ -51,6 +51,7 @@ from muslin._muslin import (
     fit,
     is_closed,
     material_names,
+    parse_material,
     parse_scene,
     print_field,
     read_material,
@@ -69,6 +70,7 @@ from muslin._muslin import (
     write_view,
 )
 from muslin.errors import Error, FileError, InputError, Interrupted, SolverError, UsageError
+from muslin.pickling import register as _register_pickling
 from muslin.tables import make_scene, to_toml
 
 __version__ = version()
@@ -120,6 +122,7 @@ __all__ = [
     "is_closed",
     "make_scene",
     "material_names",
+    "parse_material",
     "parse_scene",
     "print_field",
     "read_material",
@@ -139,3 +142,5 @@ __all__ = [
     "write_stages",
     "write_view",
 ]
+
+_register_pickling()

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from muslin._muslin import Mesh, Scene, parse_scene
-from muslin.errors import UsageError
+from muslin.errors import Error, UsageError
 
 
 def make_scene(
@@ -23,12 +23,31 @@ def make_scene(
     ``make_scene(title="flag", time={"duration": 2}, body=[{"mesh": mesh, ...}], force=[{"type": "gravity"}])``
 
     A ``mesh`` or ``rest_mesh`` may be a ``muslin.Mesh`` in place of a path; paths are relative to ``folder``. numpy
-    arrays and numbers count as lists and numbers; ``None`` leaves a key out. The places in messages are those of
-    ``scene.text``. ``muslin.scene_types`` has the types of the tables.
+    arrays and numbers count as lists and numbers; ``None`` leaves a key out. Errors name the entry, as in
+    ``body[0].mesh``. ``muslin.scene_types`` has the types of the tables.
     """
     meshes: dict[str, Mesh] = {}
     content = _with_paths({**_tables(tables), **more}, meshes)
-    return parse_scene(to_toml(content), Path(folder) / "scene.toml", list(overrides), meshes=meshes)
+    text, file = to_toml(content), Path(folder) / "scene.toml"
+    try:
+        return parse_scene(text, file, list(overrides), meshes=meshes)
+    except Error as error:
+        if error.line == 0 or error.file != str(file):
+            raise
+        raise type(error)(error.problem, error.remedy, f"make_scene: {_entry_at(text, error.line)}") from None
+
+
+def _entry_at(text: str, line: int) -> str:
+    """The entry of a line of such a text as Python names it, such as body[0].mesh; lines count from 1."""
+    lines = text.split("\n")[:line]
+    headings = [entry for entry in lines if entry.startswith("[")]
+    key = lines[-1].partition(" = ")[0]
+    if not headings:
+        return key
+    table = headings[-1].strip("[]")
+    if headings[-1].startswith("[["):
+        table += f"[{headings.count(headings[-1]) - 1}]"
+    return table if lines[-1].startswith("[") else f"{table}.{key}"
 
 
 def to_toml(tables: Mapping[str, Any]) -> str:

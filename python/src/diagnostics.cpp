@@ -15,6 +15,36 @@ Array<Number, -1> column(const std::vector<Diagnostics>& rows, Number Diagnostic
   return taken(std::move(numbers));
 }
 
+/// Takes the numbers of a row by their names.
+struct RowWriter {
+  nb::dict& state;
+  template <class Number>
+  void operator()(const char* name, const Number& number) {
+    state[name] = number;
+  }
+  void operator()(const char* name, const Vec3& vector) {
+    state[name] = nb::make_tuple(vector.x(), vector.y(), vector.z());
+  }
+};
+
+/// Puts them into a row. Errors: KeyError, if the state of another version lacks one.
+struct RowReader {
+  const nb::dict& state;
+  template <class Number>
+  void operator()(const char* name, Number& number) {
+    number = nb::cast<Number>(state[name]);
+  }
+  void operator()(const char* name, Vec3& vector) {
+    for (int axis = 0; axis < 3; ++axis) vector[axis] = nb::cast<double>(state[name][axis]);
+  }
+};
+
+template <class Row, class Numbers>
+void each_number(Row& row, Numbers numbers) {
+  Diagnostics::name_arrays(row, numbers);
+  numbers("diagnostics.wall_ms", row.wall_ms);
+}
+
 }  // namespace
 
 Columns columns_of(const std::vector<Diagnostics>& rows) {
@@ -83,6 +113,17 @@ void bind_diagnostics(nb::module_& m) {
       .def_ro("penetration", &Diagnostics::penetration,
               "Largest depth of a crossing or inside a collider [m].")
       .def_ro("wall_ms", &Diagnostics::wall_ms, "Time that this frame took.")
+      .def("__getstate__",
+           [](const Diagnostics& row) {
+             nb::dict state;
+             each_number(row, RowWriter{state});
+             return state;
+           })
+      .def("__setstate__",
+           [](Diagnostics& row, const nb::dict& state) {
+             new (&row) Diagnostics();
+             each_number(row, RowReader{state});
+           })
       .def("__repr__", [](const Diagnostics& row) {
         return fmt::format(
             "<muslin.Diagnostics frame {}: kinetic {:.6g}, elastic {:.6g}, potential {:.6g} J>", row.frame,

@@ -65,6 +65,10 @@ void bind_material(nb::module_& m) {
   m.def(
       "read_material", [](const FilePath& file) { return read_material(file); }, "file"_a,
       "A material file (.toml).");
+  m.def(
+      "parse_material",
+      [](const std::string& text, const std::string& file) { return parse_material(text, file); }, "text"_a,
+      "file"_a = "material.toml", "The same for a text; `file` is the name that messages carry.");
 }
 
 }  // namespace muslin::python

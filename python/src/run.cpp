@@ -245,7 +245,12 @@ void bind_run(nb::module_& m) {
       .def_ro("first_frame", &RunResult::first_frame, "0, or the frame that was resumed from.")
       .def_ro("last_frame", &RunResult::last_frame)
       .def_ro("changes", &RunResult::changes, "Settings changed since the run that was resumed.")
-      .def_ro("warnings", &RunResult::warnings, "Of the model.");
+      .def_ro("warnings", &RunResult::warnings, "Of the model.")
+      .def("__repr__", [](const RunResult& result) {
+        return fmt::format(
+            "<muslin.RunResult frames {} to {}{}>", result.first_frame, result.last_frame,
+            result.warnings.empty() ? "" : fmt::format(", {} warnings", result.warnings.size()));
+      });
   m.def(
       "run", &run, "scene"_a, "directory"_a, nb::kw_only(), "frames"_a = nb::none(), "resume"_a = false,
       "resume_from"_a = nb::none(), "keep_states"_a = false, "allow_tangled"_a = false,

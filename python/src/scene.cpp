@@ -2,6 +2,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "bindings.hpp"
 #include "json.hpp"
@@ -12,6 +16,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "muslin/hosts.hpp"
@@ -33,6 +38,20 @@ Scene with_meshes(Scene scene, const Meshes& meshes) {
   return scene;
 }
 
+using State = std::tuple<std::string, std::string, std::vector<std::string>, std::map<std::string, Mesh>>;
+
+State state_of(const Scene& scene) {
+  std::map<std::string, Mesh> meshes;
+  for (const auto& [path, mesh] : scene.meshes) meshes.emplace(path, *mesh);
+  return {scene.text, scene.file.string(), scene.overrides, std::move(meshes)};
+}
+
+void set_state(Scene& scene, const State& state) {
+  const auto& [text, file, overrides, meshes] = state;
+  new (&scene) Scene(parse_scene(text, file, overrides));
+  for (const auto& [path, mesh] : meshes) scene.meshes[path] = std::make_shared<const Mesh>(mesh);
+}
+
 }  // namespace
 
 JsonObject from_json(const std::string& text) {
@@ -44,6 +63,9 @@ void bind_scene(nb::module_& m) {
       .def_ro("title", &Scene::title)
       .def_ro("file", &Scene::file, "Where it was read from; its paths are relative to that.")
       .def_ro("text", &Scene::text, "The file as it was read.")
+      .def_ro("overrides", &Scene::overrides, "\"KEY=VALUE\" that replaced settings of the text.")
+      .def("__getstate__", &state_of)
+      .def("__setstate__", &set_state)
       .def_prop_ro(
           "resolved", [](const Scene& s) { return from_json(s.resolved); },
           "Every setting with its value, defaults included, by the words of the scene file.")

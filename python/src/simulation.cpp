@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "bindings.hpp"
 #include "callbacks.hpp"
@@ -14,6 +17,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 namespace nb = nanobind;
@@ -84,6 +88,38 @@ nb::typed<nb::dict, nb::str, nb::float_> costs_of(const RunCosts& costs) {
 nb::bytes checkpoint(const Self& self) {
   const std::vector<std::uint8_t> bytes = self.simulation().checkpoint();
   return nb::bytes(bytes.data(), bytes.size());
+}
+
+/// Another simulation of the same model in the same state, without forces in Python.
+void make_copy(Self& copy, const std::shared_ptr<const Model>& model, const SimulationOptions& options,
+               const std::vector<std::uint8_t>& state) {
+  new (&copy) Self(model, {options.allow_tangled, true});
+  copy.restore(state);
+}
+
+nb::object copy_of(nb::handle_t<Self> handle) {
+  const Self& self = *nb::inst_ptr<Self>(handle);
+  nb::object copy = nb::inst_alloc(handle.type());
+  make_copy(*nb::inst_ptr<Self>(copy), self.model(), self.simulation().options(),
+            self.simulation().checkpoint());
+  nb::inst_mark_ready(copy);
+  return copy;
+}
+
+using State = std::tuple<Scene, bool, nb::bytes>;
+
+State state_of(const Self& self) {
+  if (self.is_cut())
+    throw Error(ErrorKind::usage, "a simulation that was cut cannot be pickled",
+                "make it from its scene, cut it again, and restore() its checkpoint()");
+  return {self.model()->scene, self.simulation().options().allow_tangled, checkpoint(self)};
+}
+
+void set_state(Self& self, const State& state) {
+  const auto& [scene, allow_tangled, bytes] = state;
+  const auto* data = static_cast<const std::uint8_t*>(bytes.data());
+  make_copy(self, std::make_shared<const Model>(build_model(scene)), {allow_tangled},
+            {data, data + bytes.size()});
 }
 
 int next_frame(Self& self) {
@@ -239,6 +275,13 @@ void bind_simulation(nb::module_& m) {
           "\"contact\", "
           "\"linearize\" and\n"
           "\"solve\".")
+      .def("__getstate__", &state_of)
+      .def("__setstate__", &set_state)
+      .def("__copy__", &copy_of, nb::sig("def __copy__(self) -> Simulation"),
+           "Another simulation of the same model and state, without forces in Python.")
+      .def(
+          "__deepcopy__", [](nb::handle_t<Self> self, const nb::dict&) { return copy_of(self); }, "memo"_a,
+          nb::sig("def __deepcopy__(self, memo: dict) -> Simulation"))
       .def("checkpoint", &checkpoint, "The complete state: going on from it gives the same bits.")
       .def(
           "restore",

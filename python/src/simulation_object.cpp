@@ -79,6 +79,7 @@ void SimulationObject::cut(const std::string& body, const std::vector<std::array
   Work work(*this);
   simulation_.cut(body, edges);
   model_ = simulation_.shared_model();
+  cut_ = true;
   forces_.clear();
   changed();
   if (simulation_.steps_done() == 0) history_.back() = simulation_.diagnostics();

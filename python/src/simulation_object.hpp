@@ -41,6 +41,8 @@ class SimulationObject {
   void advance(const Progress& progress);
   void step();
   void restore(const std::vector<std::uint8_t>& bytes);
+  /// True if the model is no longer that of its scene.
+  bool is_cut() const { return cut_; }
   /// The simulation was restored from outside.
   void restored();
   void set_positions(nb::handle positions);
@@ -70,6 +72,7 @@ class SimulationObject {
   Simulation simulation_;
   std::vector<Diagnostics> history_;
   std::vector<nb::object> forces_;
+  bool cut_ = false;
   nb::object positions_, velocities_;
   std::thread::id worker_;
 };

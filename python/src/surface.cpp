@@ -102,7 +102,7 @@ void bind_surface(nb::module_& m) {
       "mesh"_a, "rest_positions"_a = nb::none(), "warp"_a = nb::none(),
       "rest_positions: the shape without stress (V, 3) [m]; warp: direction of the warp threads, else along "
       "the\n"
-      "texture's u.");
+      "texture's u, or the longest side of a mesh without texture coordinates.");
 }
 
 }  // namespace muslin::python

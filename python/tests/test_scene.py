@@ -54,8 +54,14 @@ def test_tables_make_the_scene_that_their_text_makes():
     assert scene.duration == 3
     assert scene.resolved["pin"][0]["where"]["nearest"] == [[0, 6, 0], [10, 6, 0]]
     assert scene.title == "flag"
-    with pytest.raises(muslin.InputError, match=r"scene\.toml:\d+:\d+: .*did you mean `gravity`"):
+    with pytest.raises(muslin.InputError, match=r"^make_scene: force\[0\]\.type: .*did you mean `gravity`"):
         muslin.make_scene(flag_tables(force=[{"type": "gravty"}]))
+    with pytest.raises(muslin.InputError, match=r"^make_scene: time\.frame_rate: "):
+        muslin.make_scene(flag_tables(time={"duration": 1, "frame_rate": -24}))
+    with pytest.raises(muslin.InputError, match=r"^make_scene: body\[1\]\.voxel_widht: "):
+        muslin.make_scene(flag_tables(body=[flag_tables()["body"][0], {"name": "b", "mesh": "b.obj", "voxel_widht": 1}]))
+    with pytest.raises(muslin.InputError, match=r"^make_scene: titel: .*title"):
+        muslin.make_scene(titel="flag")
     with pytest.raises(muslin.InputError, match="bodi"):
         muslin.make_scene(bodi=[{}])
 

@@ -125,12 +125,18 @@ TEST(Shell, ErrorsDescribeTheDefect) {
   loose.positions.emplace_back(2, 0, 0);
   EXPECT_THAT(problem(loose), HasSubstr("vertex 5 belongs to no polygon"));
 
-  const Mesh bare = test::flat_sheet(1, 1, 1, 1);
-  EXPECT_THAT(problem(bare, {}), HasSubstr("no polygon has texture coordinates"));
-  Mesh pinched = bare;
+  Mesh pinched = test::flat_sheet(1, 1, 1, 1);
   pinched.uvs.assign(4, Vec2(0.5, 0.5));
   pinched.corner_uvs = pinched.face_vertices;
   EXPECT_THAT(problem(pinched, {}), HasSubstr("no polygon has texture coordinates with an area"));
+}
+
+TEST(Shell, ThreadsWithoutTextureRunAlongTheLongestSide) {
+  const Mesh mesh = test::flat_sheet(1, 2, 2, 3);
+  const Shell bare = build_shell(mesh, mesh.positions, {}),
+              given = build_shell(mesh, mesh.positions, {Vec3::UnitX()});
+  ASSERT_EQ(bare.inverses.size(), given.inverses.size());
+  for (std::size_t t = 0; t < bare.inverses.size(); ++t) EXPECT_EQ(bare.inverses[t], given.inverses[t]);
 }
 
 TEST(Shell, StretchIsTheLargestInAnyDirection) {

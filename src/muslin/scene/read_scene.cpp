@@ -36,6 +36,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file,
   Scene scene;
   scene.file = file;
   scene.text = text;
+  scene.overrides = overrides;
   scene.title = file.stem().string();
   scene_table().read(top, scene);
   require_movable(scene);

@@ -29,6 +29,14 @@ double matching_scale(const Mesh& mesh, const std::vector<int>& bare) {
 
 }  // namespace
 
+Vec3 RestShape::longest_side() const {
+  Box bounds;
+  for (const int corner : corners) bounds.extend(positions[at(corner)]);
+  int axis;
+  bounds.sizes().maxCoeff(&axis);
+  return Vec3::Unit(axis);
+}
+
 std::vector<Vec3i> RestShape::triangles(std::vector<Vec3i> corners_of_triangles) const {
   for (Vec3i& triangle : corners_of_triangles)
     for (int& corner : triangle) corner = corners[at(corner)];

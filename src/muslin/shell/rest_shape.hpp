@@ -19,6 +19,8 @@ struct RestShape {
   bool unfolded = false;        ///< a flat pattern: no hinge is bent at rest
   double uv_scale = 0;          ///< of a texture: length of its unit [m]
 
+  /// Returns the axis along the longest side of the box around it.
+  Vec3 longest_side() const;
   /// Returns the triangles of corners (#T by 3) as indices into positions.
   std::vector<Vec3i> triangles(std::vector<Vec3i> corners_of_triangles) const;
 };

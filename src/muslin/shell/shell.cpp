@@ -95,14 +95,11 @@ class ShellBuilder {
       }
     };
     spread();
-    Box bounds;
-    for (const int corner : rest_.corners) bounds.extend(rest_.positions[at(corner)]);
-    int axis;
-    bounds.sizes().maxCoeff(&axis);
+    const Vec3 along = rest_.longest_side();
     for (std::size_t t = 0; t < known.size(); ++t) {
       if (known[t] != 0) continue;
       known[t] = 1;
-      warps_[t] = in_plane(Vec3::Unit(axis), normal_of(static_cast<int>(t)));
+      warps_[t] = in_plane(along, normal_of(static_cast<int>(t)));
       reached.push_back(t);
       spread();
     }
@@ -248,7 +245,9 @@ Shell build_shell(const Mesh& mesh, const RestShape& rest, const Weave& weave) {
 }
 
 Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave) {
-  return build_shell(mesh, rest_of_vertices(mesh, rest_positions), weave);
+  const RestShape rest = rest_of_vertices(mesh, rest_positions);
+  if (weave.warp || !mesh.corner_uvs.empty()) return build_shell(mesh, rest, weave);
+  return build_shell(mesh, rest, {rest.longest_side()});
 }
 
 double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3) {

@@ -55,7 +55,8 @@ struct Weave {
 /// twice or without area, vertices of no polygon, and texture coordinates that are missing or without area
 /// where they are needed.
 MUSLIN_API Shell build_shell(const Mesh& mesh, const RestShape& rest, const Weave& weave);
-/// The vertices of the mesh at `rest_positions` (#V by 3) are the shape without stress.
+/// The vertices of the mesh at `rest_positions` (#V by 3) are the shape without stress. Threads of a mesh
+/// without texture coordinates run along the longest side of its box, unless `weave` says otherwise.
 MUSLIN_API Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, const Weave& weave);
 
 /// Returns the angle of a hinge: 0 if flat, positive if vertices 2 and 3 turn away from the normal

@@ -136,18 +136,16 @@ class ShellBuilder {
     const bool textured = std::any_of(uvs.begin(), uvs.end(), [](int uv) { return uv >= 0; });
     if (textured) warn_of_bare_faces();
     if (!weave.warp && !textured) {
-      Box box;
-      for (const int corner : rest.corners) box.extend(rest.positions[at(corner)]);
-      int axis;
-      box.sizes().maxCoeff(&axis);
-      weave.warp = Vec3::Unit(axis);
+      weave.warp = rest.longest_side();
       const ShellMaterial& m = body_.material();
       if (m.membrane_warp != m.membrane_weft || m.warp_curve != m.weft_curve ||
           m.bending_warp != m.bending_weft || m.bending_warp_curve != m.bending_weft_curve) {
         say(fmt::format(
             "the mesh has no texture coordinates; its warp is taken along {}, its longest side; set "
             "`warp` to choose it",
-            "xyz"[axis]));
+            weave.warp->x() > 0   ? 'x'
+            : weave.warp->y() > 0 ? 'y'
+                                  : 'z'));
       }
     }
     return weave;
