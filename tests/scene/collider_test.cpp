@@ -165,7 +165,8 @@ friction = 0
     int a = 0, b = 0;
     while (surface.body_of(a) != body_a) ++a;
     while (surface.body_of(b) != body_b) ++b;
-    return surface.friction(a, b, model.contact->friction);
+    const double one = 1;
+    return surface.friction({{&a, 1}, {&one, 1}}, {{&b, 1}, {&one, 1}}, model.contact->friction);
   };
   EXPECT_EQ(friction(0, 0), 0.8);
   EXPECT_DOUBLE_EQ(friction(0, 1), 0.2);

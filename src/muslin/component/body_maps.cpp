@@ -169,9 +169,7 @@ std::vector<MappedNumber> over_points(const std::vector<MappedNumber>& maps, con
 std::uint64_t maps_hash(const std::vector<MappedNumber>& maps, std::uint64_t seed) {
   for (const MappedNumber& map : maps) {
     if (map.may_change_on_resume) continue;
-    std::vector<double> numbers;
-    numbers.reserve(map.weights.size());
-    for (std::size_t v = 0; v < map.weights.size(); ++v) numbers.push_back(map.at(v));
+    const std::vector<double> numbers = map.numbers();
     seed = hash_bytes(map.variation.key.data(), map.variation.key.size(), seed);
     seed = hash_bytes(numbers.data(), numbers.size() * sizeof(double), seed);
   }

@@ -8,6 +8,7 @@
 #include "muslin/core/vectors.hpp"
 #include "muslin/material/material.hpp"
 #include "muslin/schema/own_settings.hpp"
+#include "muslin/schema/variation.hpp"
 
 namespace muslin {
 
@@ -26,6 +27,7 @@ struct BodySettings {
   bool contact = true;             ///< touches other bodies, colliders and itself
   bool self_contact = true;        ///< touches itself
   std::optional<double> friction;  ///< Coulomb's μ; default: that of the scene
+  schema::Variations variations;   ///< of `friction`, by a map
   std::optional<int> layer;        ///< order outward: a body belongs outside those of lower layers
   std::optional<Vec3> colour;      ///< in pictures, sRGB 0…1; default: one of a palette
   Place place;

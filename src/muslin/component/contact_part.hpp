@@ -27,6 +27,7 @@ struct MUSLIN_API ContactPart {
   std::vector<Vec3i> triangles;            ///< of points
   std::vector<int> faces;                  ///< #triangles, of the mesh; −1 of balls and capsules
   std::vector<ContactPlane> planes;
+  ContactPointNumbers varying;  ///< over the points
   /// These bound d̂ if the scene gives none (scene/build_contact.hpp): the mean edge of the surface and the
   /// longest side of the component's bounds [m]. The default values impose no bound.
   double edge = std::numeric_limits<double>::infinity(), size = 0;

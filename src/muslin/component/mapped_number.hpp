@@ -19,6 +19,13 @@ struct MappedNumber {
   bool may_change_on_resume = false;
 
   double at(std::size_t vertex) const { return variation.at_weight(weights[vertex]); }
+  /// Returns the numbers at all vertices.
+  std::vector<double> numbers() const {
+    std::vector<double> all;
+    all.reserve(weights.size());
+    for (const double weight : weights) all.push_back(variation.at_weight(weight));
+    return all;
+  }
   /// Returns the number where the weight is the mean of those of some vertices.
   template <class Vertices>
   double mean(const Vertices& vertices) const {

@@ -34,9 +34,14 @@ Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - normal.dot(v) * 
 double friction_of(const ContactSurface& surface, const MergedContact& contact, double common) {
   const std::optional<double> ruled =
       contact.rule < 0 ? std::nullopt : surface.rules()[contact.rule].friction;
-  return ruled ? *ruled
-               : surface.friction(contact.points[0],
-                                  contact.points[static_cast<std::size_t>(contact.first_size)], common);
+  if (ruled) return *ruled;
+  const auto side = [&](int begin, int end) {
+    const auto first = static_cast<std::size_t>(begin), size = static_cast<std::size_t>(end - begin);
+    return ContactSurface::Side{std::span(contact.points).subspan(first, size),
+                                std::span(contact.weights).subspan(first, size)};
+  };
+  return surface.friction(side(0, contact.first_size), side(contact.first_size, point_count(contact)),
+                          common);
 }
 
 constexpr std::uint64_t second_mask = (std::uint64_t{1} << 31) - 1;

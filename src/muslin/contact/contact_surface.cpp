@@ -27,7 +27,7 @@ void ContactSurface::TriangleLists::assign(std::size_t count, const std::vector<
 
 ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
                                std::vector<ContactBody> bodies, std::vector<ContactPlane> planes,
-                               ContactRules rules)
+                               ContactRules rules, ContactPointNumbers varying)
     : triangles_(std::move(triangles)),
       triangle_edges_(triangles_.size(), Vec3i::Constant(-1)),
       ownership_(triangles_.size()),
@@ -35,7 +35,10 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
       round_triangles_(body_of_point_.size(), -1),
       bodies_(std::move(bodies)),
       planes_(std::move(planes)),
-      rules_(std::move(rules)) {
+      rules_(std::move(rules)),
+      varying_(std::move(varying)) {
+  require(varying_.friction.empty() || varying_.friction.size() == body_of_point_.size(),
+          "the friction of contact points has another count", "give one for each point");
   const auto points = static_cast<int>(body_of_point_.size());
   for (const int body : body_of_point_) {
     if (body < 0 || static_cast<std::size_t>(body) >= bodies_.size())

@@ -52,6 +52,11 @@ struct ContactPlane {
   bool turns() const { return span[0] >= 0; }
 };
 
+/// Numbers that vary over the points of a surface, #P each; empty: those of the bodies.
+struct ContactPointNumbers {
+  std::vector<double> friction;  ///< Coulomb's μ; negative: that of the point's body
+};
+
 /// Immutable.
 class ContactSurface {
  public:
@@ -66,10 +71,10 @@ class ContactSurface {
   /// Points are numbered 0 … body_of_point.size() − 1. A body's triangles use points of that body only.
   /// Errors: usage, if an index is out of range, a triangle joins two bodies, a radius or friction is
   /// negative, a stiffness not positive, two bodies that may touch both have an infinite one, or a normal is
-  /// not of length 1 (to 1e-9).
+  /// not of length 1 (to 1e-9), or `varying` has another count.
   ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
                  std::vector<ContactBody> bodies, std::vector<ContactPlane> planes = {},
-                 ContactRules rules = {});
+                 ContactRules rules = {}, ContactPointNumbers varying = {});
 
   std::size_t point_count() const { return body_of_point_.size(); }
   std::span<const Vec3i> triangles() const { return triangles_; }
@@ -110,12 +115,15 @@ class ContactSurface {
   }
   /// Returns the smallest and the largest d̂ of all pairs, those of rules included [m].
   std::array<double, 2> ranges(double common) const;
-  /// Returns Coulomb's μ between the bodies of two points: √(μ_a μ_b), so that two bodies of equal μ have
-  /// that μ between them, and a frictionless body slides on everything. `common` is the μ of bodies without
-  /// one.
-  double friction(int point_a, int point_b, double common) const {
-    const double a = body_at(point_a).friction.value_or(common),
-                 b = body_at(point_b).friction.value_or(common);
+  /// One side of a contact: the weighted mean of points of one body.
+  struct Side {
+    std::span<const int> points;      ///< at least one
+    std::span<const double> weights;  ///< of one sign
+  };
+  /// Returns Coulomb's μ between two sides: √(μ_a μ_b), so that two bodies of equal μ have that μ between
+  /// them, and a frictionless body slides on everything. `common` is the μ of bodies without one.
+  double friction(const Side& side_a, const Side& side_b, double common) const {
+    const double a = friction_of(side_a, common), b = friction_of(side_b, common);
     return a == b ? a : std::sqrt(a * b);
   }
   /// True for points of a codimensional triangle: the centre of a sphere, an end of a capsule's axis.
@@ -127,6 +135,23 @@ class ContactSurface {
   std::span<const int> triangles_at_edge(int e) const { return at_edges_[static_cast<std::size_t>(e)]; }
 
  private:
+  double friction_of(int point, double common) const {
+    const double varied = varying_.friction[static_cast<std::size_t>(point)];
+    return varied >= 0 ? varied : body_at(point).friction.value_or(common);
+  }
+  double friction_of(const Side& side, double common) const {
+    const int first = side.points.front();
+    if (varying_.friction.empty()) return body_at(first).friction.value_or(common);
+    // The differences vanish where all points have one value, which is then returned bit for bit.
+    const double base = friction_of(first, common);
+    double sum = 0, weights = 0;
+    for (std::size_t i = 0; i < side.points.size(); ++i) {
+      sum += side.weights[i] * (friction_of(side.points[i], common) - base);
+      weights += side.weights[i];
+    }
+    return std::max(0.0, base + sum / weights);
+  }
+
   /// Lists of triangles, one after the other.
   class TriangleLists {
    public:
@@ -151,6 +176,7 @@ class ContactSurface {
   std::vector<ContactBody> bodies_;
   std::vector<ContactPlane> planes_;
   ContactRules rules_;
+  ContactPointNumbers varying_;
 };
 
 }  // namespace muslin

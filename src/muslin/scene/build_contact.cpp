@@ -72,6 +72,7 @@ class ContactBuilder {
       offsets_.push_back(first_entry + part.offsets[p + 1]);
       body_of_point_.push_back(static_cast<int>(bodies_.size()));
     }
+    append(part.varying.friction, part.rest.size(), varying_.friction);
     rest_.insert(rest_.end(), part.rest.begin(), part.rest.end());
     for (const Vec3i& triangle : part.triangles)
       triangles_.emplace_back(triangle + Vec3i::Constant(first_point));
@@ -99,6 +100,14 @@ class ContactBuilder {
     if (!part.warning.empty()) model_.warnings.push_back(part.warning);
   }
 
+  /// Appends the numbers of the next `count` points, or −1 where they have none, to those of all points.
+  void append(const std::vector<double>& numbers, std::size_t count, std::vector<double>& to) const {
+    if (numbers.empty() && to.empty()) return;
+    to.resize(rest_.size(), -1.0);
+    to.insert(to.end(), numbers.begin(), numbers.end());
+    to.resize(rest_.size() + count, -1.0);
+  }
+
   void finish() {
     const auto model = std::make_shared<ContactModel>();
     model->distance =
@@ -121,7 +130,7 @@ class ContactBuilder {
     ContactRules rules = build_contact_rules(model_, {model->names, body_of_point_, *model->map});
     model->surface =
         std::make_shared<ContactSurface>(std::move(triangles_), std::move(body_of_point_), std::move(bodies_),
-                                         std::move(planes_), std::move(rules));
+                                         std::move(planes_), std::move(rules), std::move(varying_));
     model->limits.gap_floor = floor_share * model->surface->ranges(model->distance)[0];
     if (!model_.attachments.empty()) model->exempt = exemptions_at_joints(model_, *model);
     model_.contact = model;
@@ -146,6 +155,7 @@ class ContactBuilder {
   std::vector<ContactBody> bodies_;
   std::vector<double> weights_;  ///< of bodies, by point [N]
   std::vector<ContactPlane> planes_;
+  ContactPointNumbers varying_;
   std::vector<std::uint8_t> prescribed_;
   std::vector<int> groups_;
   int group_count_ = 0;

@@ -9,6 +9,7 @@
 
 #include "muslin/component/body_maps.hpp"
 #include "muslin/component/body_mesh.hpp"
+#include "muslin/component/body_table.hpp"
 #include "muslin/component/changing_terms.hpp"
 #include "muslin/component/lattice/lattice_body.hpp"
 #include "muslin/component/lattice/shared_voxels.hpp"
@@ -155,6 +156,8 @@ class LatticeBuilder {
     for (std::size_t v = 0; v < body_.lattice.vertex_count(); ++v)
       vertices.push_back(body_.lattice.rest_position(v));
     body_.vertex_maps = over_points(body_.maps, body_.mesh, vertices);
+    for (MappedNumber& map : read_maps(settings_.variations, body_table(), inputs_.files, body_))
+      body_.maps.push_back(std::move(map));
   }
 
   const BodySettings& settings_;

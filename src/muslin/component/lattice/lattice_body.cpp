@@ -135,6 +135,7 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
   part.size = mesh.bounds().sizes().maxCoeff();
   part.body.self_contact = settings.self_contact;
   part.body.friction = settings.friction;
+  if (const MappedNumber* map = find_map(maps, "friction")) part.varying.friction = map->numbers();
   part.body.layer = settings.layer;
   part.body.radius = sheet ? thickness / 2 : 0;
   part.body.solid = !sheet;

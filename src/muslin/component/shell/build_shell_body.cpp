@@ -9,6 +9,7 @@
 
 #include "muslin/component/body_maps.hpp"
 #include "muslin/component/body_mesh.hpp"
+#include "muslin/component/body_table.hpp"
 #include "muslin/component/placement.hpp"
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/component/shell/shell_kind.hpp"
@@ -41,7 +42,10 @@ class ShellBuilder {
   std::shared_ptr<Component> build() {
     const std::vector<int> fabric_of_face =
         lay_fabrics(read_body_mesh(settings_, inputs_, MeshUse::cloth, body_));
-    body_.maps = read_maps(own_.variations, shell_kind.keys(), inputs_.files, body_);
+    add_maps(own_.variations, shell_kind.keys());
+    add_maps(settings_.variations, body_table());
+    for (const FabricInUse& fabric : body_.fabrics)
+      add_maps(fabric.variations, fabric_table(), fabric.name + ".");
     const RestShape rest = rest_shape();
     at_place(settings_.mesh_place, file_, [&] { make_shell(rest); });
     for (const int face : body_.shell.faces) body_.triangle_fabrics.push_back(fabric_of_face[at(face)]);
@@ -175,6 +179,15 @@ class ShellBuilder {
     s.vertices = body_.vertex_count;
     s.triangles = static_cast<std::int64_t>(body_.shell.triangles.size());
     s.hinges = static_cast<std::int64_t>(body_.shell.hinges.size());
+  }
+
+  /// `prefix` comes before the names of the numbers.
+  void add_maps(const schema::Variations& variations, const schema::Table& keys,
+                const std::string& prefix = "") {
+    for (MappedNumber& map : read_maps(variations, keys, inputs_.files, body_)) {
+      map.variation.key = prefix + map.variation.key;
+      body_.maps.push_back(std::move(map));
+    }
   }
 
   void vary_material() {

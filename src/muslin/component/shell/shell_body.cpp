@@ -199,6 +199,29 @@ double ShellBody::mean_modulus() const {
   return sum / std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
+std::vector<double> ShellBody::frictions() const {
+  const MappedNumber* map = find_map(maps, "friction");
+  const bool varies = map != nullptr || std::any_of(fabrics.begin(), fabrics.end(), [](const FabricInUse& f) {
+                        return f.friction.has_value();
+                      });
+  if (!varies) return {};
+  std::vector<double> frictions =
+      map != nullptr ? map->numbers() : std::vector<double>(mesh.vertex_count(), -1.0);
+  std::vector<int> last(mesh.vertex_count(), -1);
+  for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
+    const int fabric = triangle_fabrics[t];
+    const FabricInUse& of = fabrics[at(fabric)];
+    if (!of.friction) continue;
+    const MappedNumber* own_map = find_map(maps, of.name + ".friction");
+    for (const int v : shell.triangles[t]) {
+      if (fabric < last[at(v)]) continue;
+      last[at(v)] = fabric;
+      frictions[at(v)] = own_map != nullptr ? own_map->at(at(v)) : *of.friction;
+    }
+  }
+  return frictions;
+}
+
 std::optional<ContactPart> ShellBody::contact_part() const {
   if (!settings.contact) return std::nullopt;
   const Triangulation cut = triangulate(mesh);
@@ -207,6 +230,7 @@ std::optional<ContactPart> ShellBody::contact_part() const {
   part.size = mesh.bounds().sizes().maxCoeff();
   part.body.self_contact = settings.self_contact;
   part.body.friction = settings.friction;
+  part.varying.friction = frictions();
   part.body.layer = settings.layer;
   part.body.radius = own().thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;
   part.body.stiffness = contact_stiffness_share * mean_modulus();

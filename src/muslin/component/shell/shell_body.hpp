@@ -80,6 +80,9 @@ class ShellBody final : public Component {
   TrustedEdge shortest_trusted_edge() const;
   const ShellBodySettings& own() const { return settings.own.as<ShellBodySettings>(); }
 
+  /// Returns Coulomb's μ of each vertex, negative where it is that of the body; empty: everywhere.
+  std::vector<double> frictions() const;
+
  private:
   std::string description_of(std::size_t fabric) const;
   /// Returns the mean membrane modulus at rest [N/m].

@@ -37,7 +37,7 @@ FabricsOfFaces fabrics_of_faces(const Material& material, const Place& place,
                                 const std::vector<MeshGroup>& materials_of_file) {
   FabricsOfFaces result;
   result.of_face.assign(mesh.face_count(), 0);
-  result.fabrics.push_back({material.name, material, place, {}});
+  result.fabrics.push_back({material.name, material, {}, {}, place, {}});
   for (const ShellFabric& fabric : fabrics) {
     const int index = static_cast<int>(result.fabrics.size());
     for (const int f : faces_of(fabric, mesh, materials_of_file)) {
@@ -49,7 +49,8 @@ FabricsOfFaces fabrics_of_faces(const Material& material, const Place& place,
                     "give every polygon one fabric");
       of_face = index;
     }
-    result.fabrics.push_back({fabric.faces, fabric.material, fabric.place, {}});
+    result.fabrics.push_back(
+        {fabric.faces, fabric.material, fabric.friction, fabric.variations, fabric.place, {}});
   }
   if (std::find(result.of_face.begin(), result.of_face.end(), 0) == result.of_face.end()) {
     result.fabrics.erase(result.fabrics.begin());

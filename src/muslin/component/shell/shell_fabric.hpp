@@ -10,12 +10,15 @@
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/mesh.hpp"
 #include "muslin/material/material.hpp"
+#include "muslin/schema/variation.hpp"
 
 namespace muslin {
 
 struct ShellFabric {
   std::string faces;  ///< a face group of the mesh, or a material of its file
   Material material;  ///< has numbers of shells
+  std::optional<double> friction;  ///< Coulomb's μ; default: that of the body
+  schema::Variations variations;   ///< of `friction`, by a map
   Place place;
 };
 
@@ -23,8 +26,10 @@ struct ShellFabric {
 struct FabricInUse {
   std::string name;  ///< its `faces`; that of its material for faces that no [[body.fabric]] names
   Material material;
+  std::optional<double> friction;
+  schema::Variations variations;
   Place place;
-  std::vector<MappedNumber> maps;  ///< by which its numbers vary over the vertices of the mesh
+  std::vector<MappedNumber> maps;  ///< by which its material varies over the vertices of the mesh
 
   const ShellMaterial& numbers() const { return *material.shell; }
 };

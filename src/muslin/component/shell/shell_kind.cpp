@@ -1,6 +1,7 @@
 #include "muslin/component/shell/shell_kind.hpp"
 
 #include "muslin/component/body_material.hpp"
+#include "muslin/component/component_keys.hpp"
 #include "muslin/component/shell/shell_body.hpp"
 #include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/geometry/inspect.hpp"
@@ -65,17 +66,6 @@ Material read_table(const TomlTable& table, const BodySettings& /*body*/,
   input_table().read(table, input);
   material.shell = input.shell;
   return material;
-}
-
-const schema::Table& fabric_table() {
-  static const schema::Table table = schema::table_of<ShellFabric>(
-      "[[body.fabric]]",
-      {schema::text("faces", &ShellFabric::faces)
-           .required()
-           .means("a face group of the mesh (OBJ `g`), or a material of its file (`usemtl` "
-                  "of OBJ, materials of glTF)"),
-       material_key(material_use, &ShellFabric::material)});
-  return table;
 }
 
 /// The key checks and writes the fabrics; `finish` reads them.
@@ -221,6 +211,22 @@ void finish(const TomlTable& table, const std::filesystem::path& folder, BodySet
 std::vector<std::string*> cut_meshes(BodySettings& body) { return {&body.mesh}; }
 
 }  // namespace
+
+const schema::Table& fabric_table() {
+  static const schema::Table table = schema::table_of<ShellFabric>(
+      "[[body.fabric]]",
+      {schema::text("faces", &ShellFabric::faces)
+           .required()
+           .means("a face group of the mesh (OBJ `g`), or a material of its file (`usemtl` "
+                  "of OBJ, materials of glTF)"),
+       material_key(material_use, &ShellFabric::material),
+       friction_key(&ShellFabric::friction)
+           .varies(&ShellFabric::variations, {.map = true})
+           .otherwise("that of the body")
+           .means("Coulomb's coefficient of its faces; vertices of several fabrics have that of the last one "
+                  "with its own")});
+  return table;
+}
 
 const BodyKind shell_kind = {.name = "shell",
                              .plural = "shells",

@@ -7,4 +7,7 @@ namespace muslin {
 
 extern const BodyKind shell_kind;
 
+/// [[body.fabric]] of a scene file.
+const schema::Table& fabric_table();
+
 }  // namespace muslin
