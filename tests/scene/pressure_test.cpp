@@ -1,9 +1,15 @@
 // `[[pressure]]`: what is read, refused and built, and a sphere that grows as Laplace and Hooke say.
 #include "muslin/scene/pressure.hpp"
 
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
 
+#include "cache/scratch.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -33,6 +39,12 @@ Scene read(const std::string& pressure, const std::string& mesh = "ball") {
   Mesh ball = sphere_mesh(Vec3::Zero(), radius), square;
   square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   square.add_face(std::array{0, 1, 2, 3});
+  MeshGroup upper{"upper", {}, {}}, all{"all", {}, {}};
+  for (int v = 0; v < static_cast<int>(ball.vertex_count()); ++v) {
+    if (ball.positions[static_cast<std::size_t>(v)].y() > 0) upper.vertices.push_back(v);
+    all.vertices.push_back(v);
+  }
+  ball.groups = {upper, all};
   scene.meshes["ball"] = std::make_shared<const Mesh>(ball);
   scene.meshes["square"] = std::make_shared<const Mesh>(square);
   return scene;
@@ -109,6 +121,84 @@ TEST(PressureScene, KeyframesDoWorkAndEnergyBalances) {
   EXPECT_NEAR(simulation.diagnostics().balance(), before, 1e-2 * largest);
   EXPECT_GT(largest, 0);
   EXPECT_NEAR(mean_radius(simulation), radius, 1e-3 * radius);  // the pressure is gone
+}
+
+/// x of all vertices after a tenth of a second.
+std::vector<Vec3> pushed(const std::string& pressure) {
+  Simulation simulation(std::make_shared<const Model>(build_model(read(pressure))));
+  for (int frame = 0; frame < 3; ++frame) simulation.advance();
+  const ConstVectors x = simulation.state().positions;
+  return {x.begin(), x.end()};
+}
+
+TEST(PressureScene, MapOfOneValueEqualsTheNumberBitForBit) {
+  const std::string pressure = "[[pressure]]\npressure = 200\n";
+  const std::vector<Vec3> plain = pushed(pressure);
+  EXPECT_EQ(pushed(pressure + "weight = { map = 'upper', from = 1, to = 1 }"), plain);
+  EXPECT_EQ(pushed("[[pressure]]\npressure = 400\nweight = { map = 'upper', from = 0.5, to = 0.5 }"), plain);
+  EXPECT_EQ(pushed("[[pressure]]\npressure = -400\nweight = -0.5"), plain);
+  EXPECT_NE(pushed(pressure + "weight = { map = 'upper', from = 0, to = 1 }"), plain);
+}
+
+TEST(PressureScene, MapPushesWithTheIntegralOfPressureAndItsWorkIsInTheAccount) {
+  const auto model = std::make_shared<const Model>(
+      build_model(read("[[pressure]]\npressure = 10\nweight = { map = 'upper', from = 0, to = 1 }\n[solver]\n"
+                       "effort = 'exact'\n")));
+  // ∫ p n dA at the start: linear on triangles, each has the mean of its corners.
+  const Mesh& ball = model->bodies[0].mesh;
+  Vec3 force = Vec3::Zero();
+  for (const Vec3i& t : triangulate(ball).triangles) {
+    const auto at = [&](int c) { return ball.positions[static_cast<std::size_t>(t[c])]; };
+    int upper = 0;
+    for (int c = 0; c < 3; ++c) upper += at(c).y() > 0 ? 1 : 0;
+    force += 10.0 * upper / 3 * 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
+  }
+  EXPECT_GT(force.y(), 0.9 * 10 * std::numbers::pi * radius * radius) << "the pressure on half a ball";
+  std::vector<Vec3> gradient(model->vertex_count(), Vec3::Zero());
+  term(*model, "pressure0")->potential->add_gradient(model->rest_positions, gradient);
+  StepContext step;
+  step.positions = model->rest_positions;
+  step.velocities = model->rest_positions;
+  step.anchor = model->rest_positions;
+  step.time_end = 0.1;
+  ASSERT_EQ(model->loads.back().name, "pressure0 by map");
+  EXPECT_EQ(model->loads.back().role, EnergyRole::work);
+  model->loads.back().load->potential(step)->add_gradient(model->rest_positions, gradient);
+  Vec3 acting = Vec3::Zero();
+  for (const Vec3& g : gradient) acting -= g;
+  EXPECT_LT((acting - force).norm(), 1e-12 * force.norm());
+
+  Simulation simulation(model);
+  const double before = simulation.diagnostics().balance();
+  for (int frame = 0; frame < 8; ++frame) simulation.advance();
+  const Diagnostics after = simulation.diagnostics();
+  EXPECT_GT(after.work, 0.01 * after.kinetic);
+  EXPECT_NEAR(after.balance(), before, 1e-2 * after.work);
+}
+
+TEST(PressureScene, MapsAreListedAndRefusedByName) {
+  const Model model =
+      build_model(read("[[pressure]]\nname = 'air'\npressure = 5\nweight = { map = 'upper', from = 0, to = 1 "
+                       "}\n"));
+  ASSERT_EQ(model.bodies[0].maps.size(), 1U);
+  EXPECT_EQ(model.bodies[0].maps.front().variation.key, "air.weight");
+  EXPECT_EQ(model.bodies[0].material_hash(0), build_model(read("")).bodies[0].material_hash(0))
+      << "it may change on a resume";
+  const std::string pressure = "[[pressure]]\npressure = 5\nweight = ";
+  EXPECT_THAT(message(pressure + "{ map = 'uper', from = 0, to = 1 }"),
+              AllOf(HasSubstr("scene.toml:12:10:"), HasSubstr("did you mean `upper`?")));
+  const test::Scratch scratch;
+  const std::string file = (scratch.path() / "short.csv").string();
+  std::ofstream(file) << "1\n0\n";
+  EXPECT_THAT(
+      message(pressure + "{ map = '" + file + "', from = 0, to = 1 }"),
+      HasSubstr("short.csv` of `weight` has 2 numbers, but the mesh of body `shell` has 642 vertices"));
+  std::ofstream(file) << "1\nnan\n";
+  EXPECT_THAT(message(pressure + "{ map = '" + file + "', from = 0, to = 1 }"),
+              HasSubstr("line 2: a number 'nan' is not a finite number"));
+  EXPECT_THAT(message(pressure + "{ map = 'upper', from = 0, to = 2 }"), HasSubstr("`weight` is 2"));
+  EXPECT_THAT(message(pressure + "{ map = 'upper', from = 0, to = nan }"), HasSubstr("to"));
+  EXPECT_THAT(message(pressure + "0.5\ngas = true"), HasSubstr("a gas has one pressure everywhere"));
 }
 
 TEST(PressureScene, ResolvedSceneHasItsDefaults) {

@@ -24,6 +24,8 @@ class EnclosedVolume {
   EnclosedVolume(const std::vector<Vec3i>& triangles, std::size_t vertex_count);
 
   std::size_t vertex_count() const { return vertex_count_; }
+  /// Those of the surface, then those that close holes; vertex_count() + h is the centre of hole h.
+  std::span<const Vec3i> triangles() const { return triangles_; }
   /// The rims of the holes, vertex by vertex, as the triangles run around them.
   const std::vector<std::vector<int>>& holes() const { return holes_; }
 

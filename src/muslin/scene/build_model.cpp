@@ -154,7 +154,7 @@ Model build_model(const Scene& scene, const Progress& progress) {
   }
   choose_explicit_steps(model);
   build_forces(model);
-  build_pressures(model);
+  build_pressures(model, components);
   build_attachments(model);
   build_probes(model);
   build_contact(model);

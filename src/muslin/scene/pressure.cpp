@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "muslin/component/body_maps.hpp"
 #include "muslin/energy/pressure_energy.hpp"
+#include "muslin/force/uneven_pressure.hpp"
 #include "muslin/geometry/enclosed_volume.hpp"
 #include "muslin/potential/restricted.hpp"
 #include "muslin/scene/common_keys.hpp"
@@ -34,6 +36,10 @@ schema::Table declare_pressure() {
            .required()
            .means("excess over the outside, constant or `{ keyframes = [{ time = …, value = … }, …] }`; of a "
                   "gas: its excess while the surface encloses the volume at rest"),
+       schema::number("weight", &PressureSettings::weight)
+           .range(Range::between(-1, 1))
+           .varies(&PressureSettings::variations, {.map = true})
+           .means("factor of the pressure at each vertex; of a gas always 1"),
        schema::truth("gas", &PressureSettings::gas)
            .means(
                "`true`: a fixed amount of gas at a constant temperature, whose pressure falls as the volume "
@@ -51,6 +57,9 @@ schema::Table declare_pressure() {
                                                const schema::Subject& subject) {
     check_window(settings.from, settings.until, subject);
     if (!settings.gas) return;
+    if (settings.weight != 1 || !settings.variations.empty())
+      throw subject.error("weight", "a gas has one pressure everywhere, but its `weight` is given",
+                          "leave out `weight`, or `gas`");
     for (const KeyedNumber::Key& key : settings.pressure.keys)
       if (key.value < -settings.atmosphere)
         throw subject.error("pressure",
@@ -64,8 +73,8 @@ schema::Table declare_pressure() {
 /// One pressure that acts on one body.
 class PressureBuilder {
  public:
-  PressureBuilder(Model& model, const PressureSettings& settings)
-      : model_(model), settings_(settings), body_(model.body(settings.body)) {}
+  PressureBuilder(Model& model, const PressureSettings& settings, Component& body)
+      : model_(model), settings_(settings), body_(body) {}
 
   void build() {
     if (!body_.is_mesh() || !body_.is_soft())
@@ -86,6 +95,13 @@ class PressureBuilder {
                       body_.name));
     }
     add(surface, settings_.gas ? volume : 0);
+    for (const MappedNumber& map :
+         read_maps(settings_.variations, pressure_table(), {model_.scene.file, model_.scene.meshes}, body_)) {
+      add_uneven(surface, map);
+      MappedNumber& shown = body_.maps.emplace_back(map);
+      shown.variation.key = settings_.name + "." + map.variation.key;
+      shown.may_change_on_resume = true;
+    }
   }
 
  private:
@@ -110,7 +126,7 @@ class PressureBuilder {
                count = static_cast<std::size_t>(body_.vertex_count);
     const PressureSettings& s = settings_;
     const auto gas_at = [s, rest_volume](double time) {
-      return Gas{s.pressure.at(time), s.gas ? s.atmosphere : 0, rest_volume};
+      return Gas{s.weight * s.pressure.at(time), s.gas ? s.atmosphere : 0, rest_volume};
     };
     // In a step that crosses a border of the window a pressure acts with its share, a gas in full.
     const auto gas_of_step = [s, gas_at](double begin, double end) -> std::optional<Gas> {
@@ -133,9 +149,25 @@ class PressureBuilder {
          std::make_shared<RestrictedLoad>(std::make_shared<Pressure>(surface, gas_of_step), first, count)});
   }
 
+  /// Adds what a map has above its middle, which is the weight of the settings.
+  void add_uneven(const std::shared_ptr<const EnclosedVolume>& surface, const MappedNumber& map) {
+    if (map.variation.from == map.variation.to) return;
+    std::vector<double> shares = map.numbers();
+    for (double& share : shares) share -= settings_.weight;
+    const auto pressure_of_step = [s = settings_](double begin, double end) {
+      const Window window{s.from, s.until};
+      return window.share(begin, end) * s.pressure.at(window.sample(end));
+    };
+    model_.loads.push_back(
+        {settings_.name + " by map", EnergyRole::work,
+         std::make_shared<RestrictedLoad>(
+             std::make_shared<UnevenPressure>(surface, std::move(shares), pressure_of_step),
+             static_cast<std::size_t>(body_.first_vertex), static_cast<std::size_t>(body_.vertex_count))});
+  }
+
   Model& model_;
   const PressureSettings& settings_;
-  const Component& body_;
+  Component& body_;
 };
 
 }  // namespace
@@ -153,8 +185,11 @@ void finish_pressure(const TomlTable& table, std::size_t index, PressureSettings
   require_new_name(table, scene.forces, "force", "pressure", pressure.name);
 }
 
-void build_pressures(Model& model) {
-  for (const PressureSettings& settings : model.scene.pressures) PressureBuilder(model, settings).build();
+void build_pressures(Model& model, std::span<const std::shared_ptr<Component>> components) {
+  for (const PressureSettings& settings : model.scene.pressures) {
+    const auto body = static_cast<std::size_t>(model.bodies.index_of(model.body(settings.body)));
+    PressureBuilder(model, settings, *components[body]).build();
+  }
 }
 
 }  // namespace muslin
