@@ -23,6 +23,7 @@ def _mesh_parts(mesh: Mesh) -> tuple[Callable[..., Mesh], tuple[Any, ...]]:
     more: dict[str, Any] = {
         "name": mesh.name,
         "face_groups": faces,
+        "materials": {name: list(members) for name, members in mesh.materials.items()},
         "groups": {name: list(members) for name, members in mesh.groups.items() if name not in faces},
     }
     if len(mesh.corner_uvs):

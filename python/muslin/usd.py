@@ -29,8 +29,8 @@ def write(
     """Writes a run as .usdc, .usda or .usd (binary).
 
     A mesh per body (or only ``body``) under ``/run``, with time samples of points [m], velocities [m/s] and extents,
-    one a frame; texture coordinates as ``primvars:st``, groups of faces as subsets, the body's colour as
-    ``displayColor``. y is up, a unit is a metre, a time code is a frame. The file appears when it is complete.
+    one a frame; texture coordinates as ``primvars:st``, groups of faces as subsets, materials of the
+    mesh's file by name, the body's colour as ``displayColor``. y is up, a unit is a metre, a time code is a frame. The file appears when it is complete.
     """
     pxr = _pxr()
     target = Path(file)
@@ -60,7 +60,7 @@ def write(
         unfinished = Path(folder) / target.name
         stage = pxr.Usd.Stage.CreateNew(str(unfinished))
         _describe(pxr, stage, run)
-        taken: set[str] = set()
+        taken = {"materials"}
         for name in bodies:
             _write_body(pxr, stage, run, name, surface, _identifier(pxr, name, taken), advance)
         try:
@@ -74,7 +74,7 @@ def write(
 def _pxr() -> Any:
     try:
         import pxr  # type: ignore[import-untyped, unused-ignore]
-        from pxr import Sdf, Tf, Usd, UsdGeom, Vt  # noqa: F401  (makes them attributes of pxr)
+        from pxr import Sdf, Tf, Usd, UsdGeom, UsdShade, Vt  # noqa: F401  (makes them attributes of pxr)
     except ImportError:
         raise UsageError("the package usd-core is not installed", "pip install muslin[usd]") from None
     return pxr
@@ -113,6 +113,7 @@ def _write_body(
     prim.CreateFaceVertexIndicesAttr(pxr.Vt.IntArray.FromNumpy(np.array(mesh.face_vertices)))
     _write_uvs(pxr, prim, mesh)
     _write_groups(pxr, prim, mesh)
+    _write_materials(pxr, prim, mesh)
     prim.CreateDisplayColorAttr([tuple(float(c) for c in run.colour(body))])
     points, velocities = prim.CreatePointsAttr(), prim.CreateVelocitiesAttr()
     extent = prim.CreateExtentAttr()
@@ -136,6 +137,25 @@ def _write_uvs(pxr: Any, prim: Any, mesh: Mesh) -> None:
     )
     primvar.Set(pxr.Vt.Vec2fArray.FromNumpy(uvs))
     primvar.SetIndices(pxr.Vt.IntArray.FromNumpy(corners))
+
+
+def _write_materials(pxr: Any, prim: Any, mesh: Mesh) -> None:
+    """Binds the faces of each material of the file to a plain material of its name, under /run/materials."""
+    taken: set[str] = set()
+    for name, faces in mesh.materials.items():
+        stage, own = prim.GetPrim().GetStage(), _identifier(pxr, name, taken)
+        pxr.UsdGeom.Scope.Define(stage, "/run/materials")
+        material = pxr.UsdShade.Material.Define(stage, f"/run/materials/{own}")
+        material.GetPrim().SetDisplayName(name)
+        shader = pxr.UsdShade.Shader.Define(stage, f"/run/materials/{own}/surface")
+        shader.CreateIdAttr("UsdPreviewSurface")
+        shader.CreateInput("roughness", pxr.Sdf.ValueTypeNames.Float).Set(0.9)
+        material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
+        pxr.UsdShade.MaterialBindingAPI.Apply(prim.GetPrim())
+        subset = pxr.UsdShade.MaterialBindingAPI(prim.GetPrim()).CreateMaterialBindSubset(
+            f"material_{own}", pxr.Vt.IntArray.FromNumpy(np.array(faces))
+        )
+        pxr.UsdShade.MaterialBindingAPI.Apply(subset.GetPrim()).Bind(material)
 
 
 def _write_groups(pxr: Any, prim: Any, mesh: Mesh) -> None:

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -82,7 +83,7 @@ void check_group_name(const std::string& name) {
 
 Mesh make_mesh(const ArrayLike& positions, const nb::object& faces, const std::optional<ArrayLike>& uvs,
                const std::optional<ArrayLike>& corner_uvs, const Groups& groups, const Groups& face_groups,
-               const std::string& name) {
+               const Groups& materials, const std::string& name) {
   Mesh mesh;
   mesh.name = name;
   mesh.positions = as_vectors(positions, "positions");
@@ -90,6 +91,17 @@ Mesh make_mesh(const ArrayLike& positions, const nb::object& faces, const std::o
   add_faces(mesh, faces);
   require_usable(mesh, name.empty() ? "the mesh" : name);
   add_uvs(mesh, uvs, corner_uvs);
+  std::vector<int> of_face(mesh.face_count(), -1);
+  for (const auto& [material, members] : materials) {
+    const std::string what = "materials[" + material + "]";
+    mesh.materials.push_back({material, ascending(as_indices(members, what))});
+    for (const int f : mesh.materials.back().faces) {
+      check_index(f, 0, mesh.face_count(), what);
+      if (std::exchange(of_face[static_cast<std::size_t>(f)], 0) >= 0)
+        throw Error(ErrorKind::usage, fmt::format("{}: face {} has a material already", what, f),
+                    "give every face one");
+    }
+  }
   for (const auto& [group, members] : face_groups) {
     check_group_name(group);
     MeshGroup added{group, ascending(as_indices(members, "face_groups[" + group + "]")), {}};
@@ -177,24 +189,29 @@ void bind_mesh(nb::module_& m) {
           "__init__",
           [](Mesh* self, const ArrayLike& positions, const nb::object& faces,
              const std::optional<ArrayLike>& uvs, const std::optional<ArrayLike>& corner_uvs,
-             const Groups& groups, const Groups& face_groups, const std::string& name) {
-            new (self) Mesh(make_mesh(positions, faces, uvs, corner_uvs, groups, face_groups, name));
+             const Groups& groups, const Groups& face_groups, const Groups& materials,
+             const std::string& name) {
+            new (self)
+                Mesh(make_mesh(positions, faces, uvs, corner_uvs, groups, face_groups, materials, name));
           },
           "positions"_a, "faces"_a, nb::kw_only(), "uvs"_a = nb::none(), "corner_uvs"_a = nb::none(),
-          "groups"_a = Groups(), "face_groups"_a = Groups(), "name"_a = "",
+          "groups"_a = Groups(), "face_groups"_a = Groups(), "materials"_a = Groups(), "name"_a = "",
           nb::sig(
               "def __init__(self, positions: numpy.typing.ArrayLike, faces: numpy.typing.ArrayLike | "
               "collections.abc.Iterable[collections.abc.Sequence[int]], *, uvs: numpy.typing.ArrayLike | "
               "None = "
               "None, corner_uvs: numpy.typing.ArrayLike | None = None, groups: collections.abc.Mapping[str, "
               "numpy.typing.ArrayLike] = {}, face_groups: collections.abc.Mapping[str, "
+              "numpy.typing.ArrayLike] = {}, materials: collections.abc.Mapping[str, "
               "numpy.typing.ArrayLike] = {}, name: str = '') -> None"),
           "From positions [m], shape (V, 3), and polygons: an (F, k) array or lists of vertex indices.\n\n"
           "uvs: texture coordinates (T, 2), one for each vertex, or any number with `corner_uvs`, the index "
           "of\n"
           "each corner of each face, -1 for none. groups: vertices by name; face_groups: faces by name. Pins "
           "and\n"
-          "forces choose vertices by the names of both.")
+          "forces choose vertices by the names of both. materials: faces by the name of a material, which "
+          "exports\n"
+          "keep; a face has at most one.")
       .def_prop_ro(
           "positions", [](Self self) { return view(self.p->positions, self.h); }, "(V, 3) [m]")
       .def_prop_ro(
@@ -226,6 +243,15 @@ void bind_mesh(nb::module_& m) {
             return groups;
           },
           "The faces of each group that has any.")
+      .def_prop_ro(
+          "materials",
+          [](Self self) {
+            nb::typed<nb::dict, nb::str, Array<const int, -1>> materials;
+            for (const MeshMaterial& material : self.p->materials)
+              materials[material.name.c_str()] = view(material.faces, self.h);
+            return materials;
+          },
+          "The faces of each material of the file.")
       .def_prop_ro("faces", &faces_of, nb::sig("def faces(self) -> list[tuple[int, ...]]"),
                    "The vertex indices of each polygon.")
       .def_ro("name", &Mesh::name)

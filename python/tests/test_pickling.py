@@ -30,12 +30,14 @@ def test_meshes(way: Way) -> None:
         corner_uvs=[0, 1, 2, -1, 0, 1, 2],
         groups={"top": [2, 3]},
         face_groups={"side": [1]},
+        materials={"Blue Cotton": [0]},
         name="flag",
     )
     other = way(mesh)
     for name in ("positions", "face_vertices", "face_offsets", "uvs", "corner_uvs"):
         np.testing.assert_array_equal(getattr(other, name), getattr(mesh, name))
-    for groups, others in ((mesh.groups, other.groups), (mesh.face_groups, other.face_groups)):
+    for part in ("groups", "face_groups", "materials"):
+        groups, others = getattr(mesh, part), getattr(other, part)
         assert {name: list(found) for name, found in groups.items()} == {n: list(f) for n, f in others.items()}
     assert other.name == "flag"
     assert len(way(grid_mesh(1, 1, 3, 3)).uvs) == 16

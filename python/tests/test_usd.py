@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from conftest import flag_tables, grid_mesh, shell_tables
-from pxr import Gf, Usd, UsdGeom, UsdValidation, Vt
+from pxr import Gf, Usd, UsdGeom, UsdShade, UsdValidation, Vt
 
 import muslin
 import muslin.usd
@@ -30,7 +30,13 @@ def run(tmp_path_factory):
     corners = np.array(sheet.corner_uvs)
     corners[5] = -1
     mesh = muslin.Mesh(
-        sheet.positions, sheet.faces, uvs=sheet.uvs, corner_uvs=corners, face_groups={"seam": [3, 4]}, name="flag"
+        sheet.positions,
+        sheet.faces,
+        uvs=sheet.uvs,
+        corner_uvs=corners,
+        face_groups={"seam": [3, 4]},
+        materials={"Blue Cotton": [0, 1], "trim": [5]},
+        name="flag",
     )
     tables = flag_tables(pin=None, probe=None)
     cloth = shell_tables()["body"][0] | {"name": "my cloth", "translate": [0, 0, 5]}
@@ -76,6 +82,10 @@ def test_holds_the_run(run, tmp_path, suffix):
     assert (flattened[~with_uv] == 0).all() and (~with_uv).sum() == 1
     subsets = UsdGeom.Subset.GetAllGeomSubsets(flag)
     assert {s.GetPrim().GetName(): list(s.GetIndicesAttr().Get()) for s in subsets}["seam"] == [3, 4]
+    for face, name in ((1, "Blue Cotton"), (5, "trim")):
+        subset = next(s for s in subsets if s.GetFamilyNameAttr().Get() == "materialBind" and face in s.GetIndicesAttr().Get())
+        material, _ = UsdShade.MaterialBindingAPI(subset.GetPrim()).ComputeBoundMaterial()
+        assert material.GetPrim().GetDisplayName() == name
     assert flag.GetDisplayColorAttr().Get() == Vt.Vec3fArray([Gf.Vec3f(0.1, 0.2, 0.3)])
 
 
@@ -107,6 +117,18 @@ def test_the_engine_writes_the_same_as_text(run, tmp_path):
             assert a.GetTimeSamples() == b.GetTimeSamples()
             for time in times:
                 assert np.array_equal(np.array(a.Get(time)), np.array(b.Get(time))), (path, attribute)
+
+
+    for stage in (engine, module):
+        subsets = UsdGeom.Subset.GetAllGeomSubsets(UsdGeom.Mesh.Get(stage, "/run/flag"))
+        bound = [s for s in subsets if s.GetFamilyNameAttr().Get() == "materialBind"]
+        names = {
+            UsdShade.MaterialBindingAPI(s.GetPrim()).ComputeBoundMaterial()[0].GetPrim().GetDisplayName(): list(
+                s.GetIndicesAttr().Get()
+            )
+            for s in bound
+        }
+        assert names == {"Blue Cotton": [0, 1], "trim": [5]}
 
 
 def test_what_cannot_be_written(run, tmp_path):

@@ -208,6 +208,37 @@ std::vector<double> numbers_behind(const std::string& text, const std::string& k
   return numbers;
 }
 
+TEST_F(Export, MaterialsOfTheMeshAreKept) {
+  const fs::path skin = scratch / "run/flag.skin.obj";
+  std::string text = bytes_of(skin);
+  text.insert(text.find("\nf ") + 1, "usemtl Blue Cotton\n");
+  text.insert(text.rfind("\nf ") + 1, "usemtl trim\n");
+  std::ofstream(skin) << text;
+  const RunReader painted(scratch / "run");
+
+  export_run(painted, scratch / "a.####.obj");
+  const Mesh first = read_mesh(scratch / "a.0000.obj").mesh;
+  ASSERT_EQ(first.materials.size(), 2u);
+  EXPECT_EQ(first.materials[0].name, "Blue Cotton");
+  EXPECT_THAT(first.material_of_face(), testing::ElementsAre(0, 0, 0, 0, 0, 1));
+
+  export_run(painted, scratch / "a.gltf");
+  const auto gltf = nlohmann::json::parse(bytes_of(scratch / "a.gltf"));
+  const auto& primitives = gltf["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 2u);
+  EXPECT_EQ(gltf["materials"][primitives[0]["material"].get<std::size_t>()]["name"], "Blue Cotton");
+  EXPECT_EQ(gltf["accessors"][primitives[0]["indices"].get<std::size_t>()]["count"], 30);
+  EXPECT_EQ(gltf["accessors"][primitives[1]["indices"].get<std::size_t>()]["count"], 6);
+  EXPECT_EQ(primitives[0]["attributes"], primitives[1]["attributes"]);
+  EXPECT_EQ(primitives[0]["targets"], primitives[1]["targets"]);
+
+  export_run(painted, scratch / "a.usda");
+  const std::string usd = bytes_of(scratch / "a.usda");
+  for (const char* words : {"def Material \"Blue_Cotton\"", "displayName = \"Blue Cotton\"",
+                            "familyName = \"materialBind\"", "rel material:binding = </run/materials/trim>"})
+    EXPECT_THAT(usd, HasSubstr(words));
+}
+
 TEST_F(Export, UsdaHasTimeSamplesUvsAndUnits) {
   export_run(*run, scratch / "a.usda");
   const std::string text = bytes_of(scratch / "a.usda");

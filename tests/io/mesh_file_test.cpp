@@ -128,11 +128,14 @@ TEST(ObjReader, KeepsTheFacesOfMaterials) {
       "3 1\n"
       "usemtl Blue Cotton\nf 3 1 2\n",
       ".obj");
-  ASSERT_EQ(file.materials.size(), 2u) << "a material without faces is left out";
-  EXPECT_EQ(file.materials[0].name, "Blue Cotton");
-  EXPECT_THAT(file.materials[0].faces, ElementsAre(1, 3));
-  EXPECT_EQ(file.materials[1].name, "rib");
-  EXPECT_THAT(file.materials[1].faces, ElementsAre(2));
+  const std::vector<MeshMaterial>& materials = file.mesh.materials;
+  ASSERT_EQ(materials.size(), 2u) << "a material without faces is left out";
+  EXPECT_EQ(materials[0].name, "Blue Cotton");
+  EXPECT_THAT(materials[0].faces, ElementsAre(1, 3));
+  EXPECT_EQ(materials[1].name, "rib");
+  EXPECT_THAT(materials[1].faces, ElementsAre(2));
+  EXPECT_THAT(file.mesh.material_of_face(), ElementsAre(-1, 0, 1, 0));
+  expect_same(read(to_obj(file.mesh, file.mesh.positions), ".obj").mesh, file.mesh);
   ASSERT_EQ(file.mesh.groups.size(), 1u) << "materials are no groups";
   EXPECT_THAT(file.mesh.groups[0].faces, ElementsAre(1, 2, 3));
 }

@@ -27,7 +27,8 @@ constexpr int vertex_buffer = 34962, index_buffer = 34963;
 struct SplitMesh {
   std::vector<int> vertices;  ///< the mesh's vertex of each glTF vertex
   std::vector<float> uvs;     ///< 2 per glTF vertex, empty without texture coordinates
-  std::vector<std::uint32_t> indices;
+  /// Of the triangles of each material of the mesh, and last of those without one.
+  std::vector<std::vector<std::uint32_t>> indices;
 };
 
 SplitMesh split(const Mesh& mesh) {
@@ -39,10 +40,16 @@ SplitMesh split(const Mesh& mesh) {
     corners.face_vertices.push_back(static_cast<int>(c));
   }
   SplitMesh result;
+  result.indices.resize(mesh.materials.size() + 1);
+  const std::vector<int> materials = mesh.material_of_face();
+  const Triangulation cut = triangulate(corners);
   std::map<std::pair<int, int>, std::uint32_t> known;
-  for (const Vec3i& triangle : triangulate(corners).triangles) {
-    for (int i = 0; i < 3; ++i) {
-      const auto corner = static_cast<std::size_t>(triangle[i]);
+  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
+    const int material = materials[static_cast<std::size_t>(cut.faces[t])];
+    std::vector<std::uint32_t>& indices =
+        material < 0 ? result.indices.back() : result.indices[static_cast<std::size_t>(material)];
+    for (const int c : cut.triangles[t]) {
+      const auto corner = static_cast<std::size_t>(c);
       const int vertex = mesh.face_vertices[corner];
       const int uv = mesh.corner_uvs.empty() ? -1 : mesh.corner_uvs[corner];
       const auto [place, added] =
@@ -56,7 +63,7 @@ SplitMesh split(const Mesh& mesh) {
           result.uvs.push_back(static_cast<float>(1 - st.y()));
         }
       }
-      result.indices.push_back(place->second);
+      indices.push_back(place->second);
     }
   }
   return result;
@@ -158,17 +165,27 @@ void export_gltf(const RunReader& run, const fs::path& file, ExportedSurface& su
   Document document;
 
   int view = document.open_view(index_buffer, 0);
-  Json primitive = {{"indices", document.accessor(view, "SCALAR", 1, mesh.indices, false)}, {"material", 0}};
+  Json primitives = Json::array(), materials = Json::array();
+  for (std::size_t m = 0; m < mesh.indices.size(); ++m) {
+    if (mesh.indices[m].empty()) continue;
+    const std::vector<MeshMaterial>& of_mesh = surface.mesh().materials;
+    primitives.push_back({{"indices", document.accessor(view, "SCALAR", 1, mesh.indices[m], false)},
+                          {"material", materials.size()}});
+    materials.push_back({{"name", m < of_mesh.size() ? of_mesh[m].name : "cloth"},
+                         {"doubleSided", true},
+                         {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.9}}}});
+  }
+  Json vertices;  // of all primitives
   view = document.open_view(vertex_buffer, 12);
   std::vector<float> numbers;
   for (int v : mesh.vertices) {
     const Vec3f& p = start[static_cast<std::size_t>(v)];
     numbers.insert(numbers.end(), p.data(), p.data() + 3);
   }
-  primitive["attributes"]["POSITION"] = document.accessor(view, "VEC3", 3, numbers, true);
+  vertices["attributes"]["POSITION"] = document.accessor(view, "VEC3", 3, numbers, true);
   if (!mesh.uvs.empty()) {
     const int uv_view = document.open_view(vertex_buffer, 8);
-    primitive["attributes"]["TEXCOORD_0"] = document.accessor(uv_view, "VEC2", 2, mesh.uvs, false);
+    vertices["attributes"]["TEXCOORD_0"] = document.accessor(uv_view, "VEC2", 2, mesh.uvs, false);
   }
   if (frames > 1) view = document.open_view(vertex_buffer, 12);
   for (int frame = 1; frame < frames; ++frame) {
@@ -179,13 +196,11 @@ void export_gltf(const RunReader& run, const fs::path& file, ExportedSurface& su
       const Vec3f d = points[static_cast<std::size_t>(v)] - start[static_cast<std::size_t>(v)];
       numbers.insert(numbers.end(), d.data(), d.data() + 3);
     }
-    primitive["targets"].push_back({{"POSITION", document.accessor(view, "VEC3", 3, numbers, true)}});
+    vertices["targets"].push_back({{"POSITION", document.accessor(view, "VEC3", 3, numbers, true)}});
   }
-  document.json["materials"] = {
-      {{"name", "cloth"},
-       {"doubleSided", true},
-       {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.9}}}}};
-  document.json["meshes"] = {{{"name", name}, {"primitives", {primitive}}}};
+  for (Json& primitive : primitives) primitive.update(vertices);
+  document.json["materials"] = std::move(materials);
+  document.json["meshes"] = {{{"name", name}, {"primitives", std::move(primitives)}}};
   document.json["nodes"] = {{{"name", name}, {"mesh", 0}}};
   document.json["scenes"] = {{{"nodes", {0}}}};
   document.json["scene"] = 0;

@@ -1,5 +1,7 @@
 #include <cctype>
+#include <map>
 #include <set>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -70,15 +72,55 @@ void append_topology(WholeFile& out, const Mesh& mesh) {
   out.append("        int[] primvars:st:indices = " + ints(indices) + "\n");
 }
 
-void append_groups(WholeFile& out, const Mesh& mesh) {
+void append_subset(WholeFile& out, const std::string& opening, const std::string& family,
+                   const std::vector<int>& faces, const std::string& more) {
+  out.append(fmt::format("\n        def GeomSubset {}\n        {{\n", opening));
+  out.append("            uniform token elementType = \"face\"\n");
+  out.append(fmt::format("            uniform token familyName = \"{}\"\n", family));
+  out.append("            int[] indices = " + ints(faces) + "\n" + more + "        }\n");
+}
+
+/// Writes the groups and the faces of each material, bound to the materials of the run, `materials`: name →
+/// identifier.
+void append_subsets(WholeFile& out, const Mesh& mesh, const std::map<std::string, std::string>& materials) {
   std::set<std::string> taken;
-  for (const MeshGroup& group : mesh.groups) {
-    if (group.faces.empty()) continue;
-    out.append(fmt::format("\n        def GeomSubset \"{}\"\n        {{\n", identifier(group.name, taken)));
-    out.append("            uniform token elementType = \"face\"\n");
-    out.append("            uniform token familyName = \"groups\"\n");
-    out.append("            int[] indices = " + ints(group.faces) + "\n        }\n");
+  for (const MeshGroup& group : mesh.groups)
+    if (!group.faces.empty())
+      append_subset(out, '"' + identifier(group.name, taken) + '"', "groups", group.faces, "");
+  for (const MeshMaterial& material : mesh.materials)
+    append_subset(
+        out,
+        fmt::format("\"{}\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )",
+                    identifier(material.name, taken)),
+        "materialBind", material.faces,
+        fmt::format("            rel material:binding = </run/materials/{}>\n", materials.at(material.name)));
+}
+
+/// Writes the materials of all surfaces, of the same plain surface; returns name → identifier.
+std::map<std::string, std::string> append_materials(WholeFile& out, std::span<ExportedSurface> surfaces,
+                                                    std::set<std::string>& taken_in_run) {
+  std::map<std::string, std::string> materials;
+  std::set<std::string> taken;
+  for (const ExportedSurface& surface : surfaces)
+    for (const MeshMaterial& material : surface.mesh().materials)
+      if (!materials.contains(material.name)) materials[material.name] = identifier(material.name, taken);
+  if (materials.empty()) return materials;
+  taken_in_run.insert("materials");
+  out.append("    def Scope \"materials\"\n    {\n");
+  for (const auto& [name, id] : materials) {
+    out.append(fmt::format(
+        "        def Material \"{}\" (\n            displayName = \"{}\"\n        )\n        {{\n", id,
+        escaped(name)));
+    out.append(fmt::format(
+        "            token outputs:surface.connect = </run/materials/{}/surface.outputs:surface>\n\n", id));
+    out.append(
+        "            def Shader \"surface\"\n            {\n"
+        "                uniform token info:id = \"UsdPreviewSurface\"\n"
+        "                float inputs:roughness = 0.9\n"
+        "                token outputs:surface\n            }\n        }\n");
   }
+  out.append("    }\n");
+  return materials;
 }
 
 template <class At>
@@ -102,10 +144,13 @@ void export_usd(const RunReader& run, const fs::path& file, std::span<ExportedSu
                   escaped(run.title()), frames - 1, run.frame_rate(), run.frame_rate()));
   out.append("def Xform \"run\" (\n    kind = \"component\"\n)\n{\n");
   std::set<std::string> taken;
+  const std::map<std::string, std::string> materials = append_materials(out, surfaces, taken);
   double done = 0;
   for (ExportedSurface& surface : surfaces) {
     const Mesh& mesh = surface.mesh();
-    out.append(fmt::format("    def Mesh \"{}\"\n    {{\n", identifier(surface.name(), taken)));
+    const std::string bound =
+        mesh.materials.empty() ? "" : " (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )";
+    out.append(fmt::format("    def Mesh \"{}\"{}\n    {{\n", identifier(surface.name(), taken), bound));
     append_topology(out, mesh);
     std::vector<Vec3f> extents;
     append_samples(out, "point3f[] points", frames, [&](int frame) {
@@ -127,7 +172,7 @@ void export_usd(const RunReader& run, const fs::path& file, std::span<ExportedSu
       const auto first = extents.begin() + 2 * frame;
       return vectors({first[0], first[1]});
     });
-    append_groups(out, mesh);
+    append_subsets(out, mesh, materials);
     out.append("    }\n");
   }
   out.append("}\n");

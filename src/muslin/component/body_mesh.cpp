@@ -44,12 +44,12 @@ void reduce(const BodySettings& settings, const ComponentInputs& inputs, MeshUse
 
 }  // namespace
 
-std::vector<MeshGroup> read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs,
-                                      MeshUse use, Component& component) {
+void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, MeshUse use,
+                    Component& component) {
   component.name = settings.name;
   inputs.progress.at(0.0, "mesh");
   const std::string file = inputs.files.resolve(settings.mesh).string();
-  return at_place(settings.mesh_place, file, [&] {
+  at_place(settings.mesh_place, file, [&] {
     MeshFile read = inputs.files.mesh(settings.mesh);
     if (!read.note.empty()) warn_of_body(inputs, settings.name, read.note);
     component.mesh = std::move(read.mesh);
@@ -67,7 +67,6 @@ std::vector<MeshGroup> read_body_mesh(const BodySettings& settings, const Compon
                       component.report.unused_vertices == 1 ? "stays where it is" : "stay where they are"));
     if (drops || settings.weld) reduce(settings, inputs, use, component);
     for (const std::string& warning : component.report.warnings) warn_of_body(inputs, settings.name, warning);
-    return std::move(read.materials);
   });
 }
 

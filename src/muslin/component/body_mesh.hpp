@@ -32,10 +32,9 @@ void warn_of_body(const ComponentInputs& inputs, const std::string& body, const 
 enum class MeshUse { solid, cloth };
 
 /// Fills in name, mesh, source, attributes and report of a component, the mesh placed in the world and
-/// welded. Returns the materials of the file. Errors: input and file, with the place in the scene and the
-/// mesh file.
-std::vector<MeshGroup> read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs,
-                                      MeshUse use, Component& component);
+/// welded. Errors: input and file, with the place in the scene and the mesh file.
+void read_body_mesh(const BodySettings& settings, const ComponentInputs& inputs, MeshUse use,
+                    Component& component);
 
 /// Continues a hash with what a saved state must fit of a material, its density and law, and with a number of
 /// the kind's own, or 0. Stiffness and damping may change on a resume.

@@ -19,6 +19,13 @@ void Mesh::add_face(std::span<const int> vertices) {
   if (!corner_uvs.empty()) corner_uvs.resize(face_vertices.size(), -1);
 }
 
+std::vector<int> Mesh::material_of_face() const {
+  std::vector<int> of_face(face_count(), -1);
+  for (std::size_t m = 0; m < materials.size(); ++m)
+    for (const int f : materials[m].faces) of_face[static_cast<std::size_t>(f)] = static_cast<int>(m);
+  return of_face;
+}
+
 Box Mesh::bounds() const {
   Box box;
   if (face_vertices.empty())

@@ -21,13 +21,22 @@ struct MeshGroup {
   std::vector<int> vertices;  ///< vertices of those faces, or of a vertex group
 };
 
+/// The faces to which a file gives a material: `usemtl` of OBJ, the materials of glTF.
+struct MeshMaterial {
+  std::string name;
+  std::vector<int> faces;  ///< ascending
+};
+
 struct MUSLIN_API Mesh : Topology {
   std::string name;             ///< object name, may be empty
   std::vector<Vec3> positions;  ///< #V by 3
   std::vector<Vec2> uvs;        ///< #T texture coordinates; a vertex on a seam has several
   std::vector<int> corner_uvs;  ///< #C index into uvs, −1 where a corner has none; empty if none has
   std::vector<MeshGroup> groups;
+  std::vector<MeshMaterial> materials;  ///< a face has one of them, or none
 
+  /// Returns for each face (#F) the index of its material, −1 for none.
+  std::vector<int> material_of_face() const;
   std::size_t vertex_count() const { return positions.size(); }
   /// Appends a polygon of at least three corners, without texture coordinates. Errors: usage.
   void add_face(std::span<const int> vertices);

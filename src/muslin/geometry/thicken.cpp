@@ -171,6 +171,15 @@ Mesh thicken(const Mesh& mesh, double thickness) {
   }
   solid.uvs = mesh.uvs;
   solid.corner_uvs = uvs_of_solid(mesh, patches, rim);
+  for (const MeshMaterial& material : mesh.materials) solid.materials.push_back({material.name, {}});
+  const std::vector<int> materials = mesh.material_of_face();
+  const auto give_material = [&](int f, std::size_t of_solid) {
+    const int material = materials[static_cast<std::size_t>(f)];
+    if (material < 0) return;
+    solid.materials[static_cast<std::size_t>(material)].faces.push_back(static_cast<int>(of_solid));
+  };
+  for (std::size_t f = 0; f < 2 * face_count; ++f) give_material(static_cast<int>(f / 2), f);
+  for (std::size_t w = 0; w < rim.size(); ++w) give_material(rim[w].face, 2 * face_count + w);
   for (const MeshGroup& group : mesh.groups) solid.groups.push_back(group_of_solid(mesh, group, upper, rim));
   return solid;
 }

@@ -84,6 +84,10 @@ void each_part(Bytes& bytes, MeshFile& file) {
     bytes.list(group.faces);
     bytes.list(group.vertices);
   });
+  bytes.items(mesh.materials, [&](MeshMaterial& material) {
+    bytes.list(material.name);
+    bytes.list(material.faces);
+  });
   bytes.list(file.note);
   bytes.items(file.attributes, [&](VertexAttribute& attribute) {
     bytes.list(attribute.name);

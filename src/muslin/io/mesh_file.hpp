@@ -28,8 +28,6 @@ struct MeshFile {
   /// Numbers at the vertices: further properties of a PLY file, of which one-byte ones are divided by 255,
   /// and `red`, `green`, `blue` of an OBJ file with colours.
   std::vector<VertexAttribute> attributes = {};
-  /// The faces of each material that the file names: `usemtl` of OBJ, the materials of glTF.
-  std::vector<MeshGroup> materials = {};
 };
 MUSLIN_API MeshFile read_mesh(const std::filesystem::path& path);
 

@@ -10,6 +10,11 @@
 namespace muslin {
 namespace {
 
+std::string one_line(std::string name) {
+  std::replace_if(name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return name;
+}
+
 /// Ends a line of names; a trailing backslash would join it to the next line.
 void end_names(std::string& text) {
   if (text.back() == '\\') text.back() = '_';
@@ -74,9 +79,7 @@ std::string to_obj(const Mesh& mesh, ConstVectors positions) {
   std::string text;
   text.reserve(60 * positions.size() + 8 * mesh.face_vertices.size());
   if (!mesh.name.empty()) {
-    std::string name = mesh.name;
-    std::replace_if(name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    text += "o " + name;
+    text += "o " + one_line(mesh.name);
     end_names(text);
   }
   for (const Vec3& position : positions) {
@@ -95,7 +98,9 @@ std::string to_obj(const Mesh& mesh, ConstVectors positions) {
     text += '\n';
   }
   const FaceGroups groups(mesh);
+  const std::vector<int> materials = mesh.material_of_face();
   std::span<const int> active;
+  int material = -1;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     if (const auto wanted = groups.of(f);
         !std::equal(wanted.begin(), wanted.end(), active.begin(), active.end())) {
@@ -103,6 +108,12 @@ std::string to_obj(const Mesh& mesh, ConstVectors positions) {
       for (const int g : wanted) text += ' ' + one_word(mesh.groups[static_cast<std::size_t>(g)].name);
       end_names(text);
       active = wanted;
+    }
+    if (materials[f] != material) {
+      material = materials[f];
+      text += "usemtl";
+      if (material >= 0) text += ' ' + one_line(mesh.materials[static_cast<std::size_t>(material)].name);
+      end_names(text);
     }
     text += 'f';
     for (int c = mesh.face_offsets[f]; c < mesh.face_offsets[f + 1]; ++c) {

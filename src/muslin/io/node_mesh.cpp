@@ -31,10 +31,10 @@ void NodeMesh::begin_part(std::size_t positions, std::size_t uvs, const std::str
   part_uvs_ = uvs;
   part_material_ = 0;
   if (material.empty()) return;
-  const auto known = std::find_if(materials_.begin(), materials_.end(),
-                                  [&](const MeshGroup& other) { return other.name == material; });
-  part_material_ = static_cast<std::size_t>(known - materials_.begin()) + 1;
-  if (known == materials_.end()) materials_.push_back({material, {}, {}});
+  const auto known = std::find_if(mesh_.materials.begin(), mesh_.materials.end(),
+                                  [&](const MeshMaterial& other) { return other.name == material; });
+  part_material_ = static_cast<std::size_t>(known - mesh_.materials.begin()) + 1;
+  if (known == mesh_.materials.end()) mesh_.materials.push_back({material, {}});
 }
 
 void NodeMesh::position(const Vec3& local) {
@@ -60,7 +60,7 @@ void NodeMesh::face(std::span<const std::size_t> corners) {
   }
   const int face = static_cast<int>(mesh_.face_count());
   mesh_.groups.back().faces.push_back(face);
-  if (part_material_ > 0) materials_[part_material_ - 1].faces.push_back(face);
+  if (part_material_ > 0) mesh_.materials[part_material_ - 1].faces.push_back(face);
   mesh_.face_offsets.push_back(static_cast<int>(mesh_.face_vertices.size()));
 }
 
@@ -75,12 +75,11 @@ MeshFile NodeMesh::finish(const std::string& reason, const std::string& extra) {
     group.name = one_word(group.name);
     complete_group(mesh_, group);
   }
-  std::erase_if(materials_, [](const MeshGroup& material) { return material.faces.empty(); });
-  for (MeshGroup& material : materials_) complete_group(mesh_, material);
+  std::erase_if(mesh_.materials, [](const MeshMaterial& material) { return material.faces.empty(); });
   std::string note = reason + ": " + std::to_string(stored_) +
                      " stored vertices were welded by position into " +
                      std::to_string(mesh_.positions.size()) + "." + extra;
-  return {std::move(mesh_), std::move(note), {}, std::move(materials_)};
+  return {std::move(mesh_), std::move(note), {}};
 }
 
 void NodeMesh::refuse(const std::string& problem) const {

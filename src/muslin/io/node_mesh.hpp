@@ -36,7 +36,6 @@ class NodeMesh {
 
   std::string file_;
   Mesh mesh_;
-  std::vector<MeshGroup> materials_;
   Welder welder_;
   Eigen::Matrix4d transform_ = Eigen::Matrix4d::Identity();
   bool mirrored_ = false;

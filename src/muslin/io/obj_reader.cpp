@@ -36,7 +36,8 @@ class ObjReader {
     if (!has_uvs_) mesh_.corner_uvs.clear();
     if (mesh_.face_count() == 0) mesh_.face_offsets.clear();
     collect_groups();
-    MeshFile file{{}, note(), {}, materials()};
+    mesh_.materials = materials();
+    MeshFile file{{}, note(), {}};
     if (colours_[0].values.size() == mesh_.positions.size() && !mesh_.positions.empty())
       file.attributes.assign(colours_.begin(), colours_.end());
     file.mesh = std::move(mesh_);
@@ -239,18 +240,17 @@ class ObjReader {
   }
 
   /// The runs must be complete.
-  std::vector<MeshGroup> materials() const {
-    std::vector<MeshGroup> result;
+  std::vector<MeshMaterial> materials() const {
+    std::vector<MeshMaterial> result;
     result.reserve(material_names_.size());
-    for (const std::string& name : material_names_) result.push_back({name, {}, {}});
+    for (const std::string& name : material_names_) result.push_back({name, {}});
     for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
       if (runs_[r].material < 0) continue;
       std::vector<int>& faces = result[static_cast<std::size_t>(runs_[r].material)].faces;
       for (std::size_t f = runs_[r].first_face; f < runs_[r + 1].first_face; ++f)
         faces.push_back(static_cast<int>(f));
     }
-    std::erase_if(result, [](const MeshGroup& material) { return material.faces.empty(); });
-    for (MeshGroup& each : result) complete_group(mesh_, each);
+    std::erase_if(result, [](const MeshMaterial& material) { return material.faces.empty(); });
     return result;
   }
 

@@ -174,6 +174,11 @@ Subdivision::Subdivision(const Mesh& mesh, int levels) {
   }
   mesh_.positions = points(mesh.positions);
 
+  for (const MeshMaterial& material : mesh.materials) mesh_.materials.push_back({material.name, {}});
+  const std::vector<int> materials = mesh.material_of_face();
+  for (std::size_t f = 0; f < parents.size(); ++f)
+    if (const int material = materials[at(parents[f])]; material >= 0)
+      mesh_.materials[at(material)].faces.push_back(static_cast<int>(f));
   for (const MeshGroup& group : mesh.groups) {
     const auto inside = [&](int v) {
       return std::binary_search(group.vertices.begin(), group.vertices.end(), v);

@@ -40,8 +40,8 @@ class ShellBuilder {
   }
 
   std::shared_ptr<Component> build() {
-    const std::vector<int> fabric_of_face =
-        lay_fabrics(read_body_mesh(settings_, inputs_, MeshUse::cloth, body_));
+    read_body_mesh(settings_, inputs_, MeshUse::cloth, body_);
+    const std::vector<int> fabric_of_face = lay_fabrics();
     add_maps(own_.variations, shell_kind.keys());
     add_maps(settings_.variations, body_table());
     for (const FabricInUse& fabric : body_.fabrics)
@@ -58,9 +58,8 @@ class ShellBuilder {
   void say(const std::string& sentence) { warn_of_body(inputs_, settings_.name, sentence); }
 
   /// Returns the fabric of each face. The material of the first fabric in use becomes that of the body.
-  std::vector<int> lay_fabrics(const std::vector<MeshGroup>& materials_of_file) {
-    FabricsOfFaces found =
-        fabrics_of_faces(settings_.material, settings_.place, own_.fabrics, body_.mesh, materials_of_file);
+  std::vector<int> lay_fabrics() {
+    FabricsOfFaces found = fabrics_of_faces(settings_.material, settings_.place, own_.fabrics, body_.mesh);
     body_.fabrics = std::move(found.fabrics);
     body_.settings.material = body_.fabrics.front().material;
     auto& own = body_.settings.own.as<ShellBodySettings>();

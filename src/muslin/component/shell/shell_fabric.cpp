@@ -11,18 +11,20 @@
 namespace muslin {
 namespace {
 
-const std::vector<int>& faces_of(const ShellFabric& fabric, const Mesh& mesh,
-                                 const std::vector<MeshGroup>& materials_of_file) {
+const std::vector<int>& faces_of(const ShellFabric& fabric, const Mesh& mesh) {
   std::vector<std::string> names;
-  for (const std::vector<MeshGroup>* groups : {&mesh.groups, &materials_of_file}) {
-    for (const MeshGroup& group : *groups) {
-      if (!group.faces.empty()) names.push_back(group.name);
-      if (group.name != fabric.faces) continue;
-      if (!group.faces.empty()) return group.faces;
-      throw Error(ErrorKind::input, fabric.place,
-                  fmt::format("the group `{}` of the mesh has vertices, but no faces", fabric.faces),
-                  "make a group of faces in the modeller, or give the faces a material");
-    }
+  names.reserve(mesh.groups.size() + mesh.materials.size());
+  for (const MeshGroup& group : mesh.groups) {
+    if (!group.faces.empty()) names.push_back(group.name);
+    if (group.name != fabric.faces) continue;
+    if (!group.faces.empty()) return group.faces;
+    throw Error(ErrorKind::input, fabric.place,
+                fmt::format("the group `{}` of the mesh has vertices, but no faces", fabric.faces),
+                "make a group of faces in the modeller, or give the faces a material");
+  }
+  for (const MeshMaterial& material : mesh.materials) {
+    names.push_back(material.name);
+    if (material.name == fabric.faces) return material.faces;
   }
   throw Error(ErrorKind::input, fabric.place,
               fmt::format("the mesh has no face group or material `{}`", fabric.faces),
@@ -33,14 +35,13 @@ const std::vector<int>& faces_of(const ShellFabric& fabric, const Mesh& mesh,
 }  // namespace
 
 FabricsOfFaces fabrics_of_faces(const Material& material, const Place& place,
-                                const std::vector<ShellFabric>& fabrics, const Mesh& mesh,
-                                const std::vector<MeshGroup>& materials_of_file) {
+                                const std::vector<ShellFabric>& fabrics, const Mesh& mesh) {
   FabricsOfFaces result;
   result.of_face.assign(mesh.face_count(), 0);
   result.fabrics.push_back({material.name, material, {}, {}, place, {}});
   for (const ShellFabric& fabric : fabrics) {
     const int index = static_cast<int>(result.fabrics.size());
-    for (const int f : faces_of(fabric, mesh, materials_of_file)) {
+    for (const int f : faces_of(fabric, mesh)) {
       int& of_face = result.of_face[static_cast<std::size_t>(f)];
       if (of_face != 0)
         throw Error(ErrorKind::input, fabric.place,

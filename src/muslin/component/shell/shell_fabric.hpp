@@ -43,8 +43,7 @@ struct FabricsOfFaces {
 /// same name. Errors: input, at the place of the fabric: an unknown name, one without faces, a face that has
 /// a fabric already.
 FabricsOfFaces fabrics_of_faces(const Material& material, const Place& place,
-                                const std::vector<ShellFabric>& fabrics, const Mesh& mesh,
-                                const std::vector<MeshGroup>& materials_of_file);
+                                const std::vector<ShellFabric>& fabrics, const Mesh& mesh);
 
 /// Returns the largest limit of stretch of a material, whose limit may vary.
 std::optional<double> largest_stretch_limit(const ShellMaterial& material);
