@@ -62,6 +62,22 @@ TEST(ContactRecord, KeepsTheRulesOfPairs) {
   EXPECT_THROW(read_contact_record(far), Error);
 }
 
+TEST(ContactRecord, KeepsRadiiThatVary) {
+  ContactModel model;
+  model.surface = std::make_shared<ContactSurface>(
+      std::vector<Vec3i>{{1, 2, 3}}, std::vector<int>{0, 1, 1, 1}, std::vector<ContactBody>{{}, {0.003}},
+      std::vector<ContactPlane>(), ContactRules(), ContactPointNumbers{{}, {-1, 0.001, 0.002, 0.003}});
+  model.rest.resize(4);
+  const Json written = contact_record_json(model);
+  const ContactRecord record = read_contact_record(written);
+  EXPECT_TRUE(record.bodies[0].radii.empty());
+  EXPECT_EQ(record.bodies[1].radius, 0.003);
+  EXPECT_THAT(record.bodies[1].radii, testing::ElementsAre(0.001, 0.002, 0.003));
+  Json shorter = written;
+  shorter["bodies"][1]["radii"].erase(0);
+  EXPECT_THROW(read_contact_record(shorter), Error);
+}
+
 TEST(ContactRecord, RefusesDamage) {
   const auto message = [](const Json& contact) {
     try {

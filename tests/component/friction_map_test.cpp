@@ -185,7 +185,7 @@ TEST_F(FrictionMaps, AreListedAndRefusedByName) {
 
 TEST(FrictionOfPoints, IsInterpolatedAndExactWhereItIsEven) {
   const ContactSurface surface({{0, 1, 2}}, {0, 0, 0, 1}, {{}, {.friction = 0.25}}, {}, {},
-                               {.friction = {0.1, 0.3, 0.8, -1}});
+                               {.friction = {0.1, 0.3, 0.8, -1}, .radius = {}});
   const std::array triangle = {0, 1, 2}, other = {3, 3, 3};
   const std::array weights = {-0.2, -0.5, -0.3};
   const std::array one = {1.0};
@@ -194,11 +194,13 @@ TEST(FrictionOfPoints, IsInterpolatedAndExactWhereItIsEven) {
   };
   EXPECT_DOUBLE_EQ(friction(surface), std::sqrt(0.25 * (0.2 * 0.1 + 0.5 * 0.3 + 0.3 * 0.8)));
   const ContactSurface even({{0, 1, 2}}, {0, 0, 0, 1}, {{}, {.friction = 0.3}}, {}, {},
-                            {.friction = {0.3, 0.3, 0.3, -1}});
+                            {.friction = {0.3, 0.3, 0.3, -1}, .radius = {}});
   EXPECT_EQ(friction(even), 0.3);
-  const ContactSurface common({{0, 1, 2}}, {0, 0, 0, 1}, {{}, {}}, {}, {}, {.friction = {-1, -1, -1, 0.7}});
+  const ContactSurface common({{0, 1, 2}}, {0, 0, 0, 1}, {{}, {}}, {}, {},
+                              {.friction = {-1, -1, -1, 0.7}, .radius = {}});
   EXPECT_EQ(friction(common), std::sqrt(0.7 * 0.5));
-  EXPECT_THROW(ContactSurface({{0, 1, 2}}, {0, 0, 0}, {{}}, {}, {}, {.friction = {0.1}}), Error);
+  EXPECT_THROW(ContactSurface({{0, 1, 2}}, {0, 0, 0}, {{}}, {}, {}, {.friction = {0.1}, .radius = {}}),
+               Error);
 }
 
 }  // namespace

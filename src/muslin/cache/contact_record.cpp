@@ -77,6 +77,8 @@ Json contact_record_json(const ContactModel& contact) {
     const int point = static_cast<int>(p);
     Json& body = bodies[static_cast<std::size_t>(surface.body_of(point))];
     body["points"] = body["points"].get<std::size_t>() + 1;
+    const std::vector<double>& radii = surface.varying().radius;
+    if (!radii.empty() && radii[p] >= 0) body["radii"].push_back(radii[p]);
     if (surface.is_round(point)) body["axis"].push_back(triple(contact.rest[p]));
   }
   Json record = {{"distance", contact.distance}, {"bodies", bodies}};
@@ -100,6 +102,10 @@ ContactRecord read_contact_record(const Json& contact) {
       body.self_contact = entry.at("self_contact").get<bool>();
       body.fixed = entry.at("fixed").get<bool>();
       body.range = optional(entry.value("distance", Json()));
+      body.radii = entry.value("radii", std::vector<double>());
+      if (!body.radii.empty() && body.radii.size() != body.points)
+        throw Error(ErrorKind::input, "the object `contact` has radii of another number of points",
+                    "run the scene again");
       points += body.points;
       for (const Json& point : entry.value("axis", Json::array()))
         body.axis.emplace_back(point.at(0).get<double>(), point.at(1).get<double>(),

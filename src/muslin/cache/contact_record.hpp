@@ -18,7 +18,8 @@ struct ContactRecord {
   struct Body {
     std::string name;
     std::size_t points = 0;    ///< of its surface: as many as its skin has, unless it is round or a plane
-    double radius = 0;         ///< half the thickness, or the radius of a ball or capsule [m]
+    double radius = 0;         ///< half the (greatest) thickness, or the radius of a ball or capsule [m]
+    std::vector<double> radii;  ///< of its points [m]; empty: all have that radius
     bool self_contact = true;  ///< true if it touches itself
     bool fixed = false;        ///< a collider that forces do not move
     std::optional<double> range;  ///< its own d̂ [m]

@@ -180,10 +180,10 @@ ContactPair ContactCandidates::make_pair(PairKind kind, int first, int second) c
   pair.first = first;
   pair.second = second;
   pair.points = points_of(*surface_, kind, first, second);
-  pair.thickness = surface_->radius_of(pair.points[0]) +
-                   surface_->radius_of(pair.points[static_cast<std::size_t>(pair.point_count() - 1)]);
-  pair.range = surface_->range(pair.points[0], pair.points[static_cast<std::size_t>(pair.point_count() - 1)],
-                               contact_distance_);
+  const std::span<const int> points(pair.points.data(), static_cast<std::size_t>(pair.point_count()));
+  const auto size = static_cast<std::size_t>(first_feature_size(kind));
+  pair.thickness = surface_->radius_of(points.first(size)) + surface_->radius_of(points.subspan(size));
+  pair.range = surface_->range(points.front(), points.back(), contact_distance_);
   if (active_rules_ != 0) follow_rule(pair);
   limit_by_rest(pair);
   return pair;

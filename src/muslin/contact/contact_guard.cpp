@@ -346,7 +346,8 @@ void ContactGuard::end(ConstVectors q) {
   // Ignored pairs are not candidates. Triangles that cross have distance 0.
   const ContactSurface& surface = *model_->surface;
   const auto radius = [&](int t) {
-    return surface.radius_of(surface.triangles()[static_cast<std::size_t>(t)][0]);
+    const Vec3i& corners = surface.triangles()[static_cast<std::size_t>(t)];
+    return surface.radius_of(std::span<const int>(corners.data(), 3));
   };
   for (const auto& [first, second] : memory_.tangled)
     memory_.smallest_gap = std::min(memory_.smallest_gap, 0.0 - (radius(first) + radius(second)));

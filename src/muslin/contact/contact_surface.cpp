@@ -39,11 +39,16 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
       varying_(std::move(varying)) {
   require(varying_.friction.empty() || varying_.friction.size() == body_of_point_.size(),
           "the friction of contact points has another count", "give one for each point");
+  require(varying_.radius.empty() || varying_.radius.size() == body_of_point_.size(),
+          "the radii of contact points have another count", "give one for each point");
   const auto points = static_cast<int>(body_of_point_.size());
   for (const int body : body_of_point_) {
     if (body < 0 || static_cast<std::size_t>(body) >= bodies_.size())
       throw Error(ErrorKind::usage, "a contact point has a body that does not exist", "check body_of_point");
   }
+  for (std::size_t point = 0; point < varying_.radius.size(); ++point)
+    require(varying_.radius[point] <= radius_of(static_cast<int>(point)),
+            "the radius of a contact point is greater than that of its body", "give the body the greatest");
   for (const ContactBody& body : bodies_) {
     if (!(body.range.value_or(1) > 0))
       throw Error(ErrorKind::usage, "a contact distance is not positive", "give a length in metres");

@@ -20,7 +20,7 @@
 namespace muslin {
 
 struct ContactBody {
-  double radius = 0;         ///< half the thickness, or the radius of a sphere or capsule [m]
+  double radius = 0;         ///< half the (greatest) thickness, or the radius of a sphere or capsule [m]
   bool self_contact = true;  ///< true if it touches itself
   bool fixed = false;        ///< a collider: two fixed bodies do not touch each other
   /// Stiffness of a contact with this body [N/m]; a pair uses the smaller one. For cloth about 0.15 × Young's
@@ -52,9 +52,10 @@ struct ContactPlane {
   bool turns() const { return span[0] >= 0; }
 };
 
-/// Numbers that vary over the points of a surface, #P each; empty: those of the bodies.
+/// Numbers that vary over the points of a surface, #P each; empty, or negative at a point: that of the body.
 struct ContactPointNumbers {
-  std::vector<double> friction;  ///< Coulomb's μ; negative: that of the point's body
+  std::vector<double> friction;  ///< Coulomb's μ
+  std::vector<double> radius;    ///< half the thickness [m], at most the radius of the body
 };
 
 /// Immutable.
@@ -71,7 +72,7 @@ class ContactSurface {
   /// Points are numbered 0 … body_of_point.size() − 1. A body's triangles use points of that body only.
   /// Errors: usage, if an index is out of range, a triangle joins two bodies, a radius or friction is
   /// negative, a stiffness not positive, two bodies that may touch both have an infinite one, or a normal is
-  /// not of length 1 (to 1e-9), or `varying` has another count.
+  /// not of length 1 (to 1e-9), `varying` has another count, or a radius is greater than that of its body.
   ContactSurface(std::vector<Vec3i> triangles, std::vector<int> body_of_point,
                  std::vector<ContactBody> bodies, std::vector<ContactPlane> planes = {},
                  ContactRules rules = {}, ContactPointNumbers varying = {});
@@ -90,7 +91,19 @@ class ContactSurface {
 
   int body_of(int point) const { return body_of_point_[static_cast<std::size_t>(point)]; }
   const ContactBody& body_at(int point) const { return bodies_[static_cast<std::size_t>(body_of(point))]; }
+  /// Returns the radius of a point's body, which no feature of it exceeds.
   double radius_of(int point) const { return body_at(point).radius; }
+  /// Returns the radius of a feature: the greatest of its points.
+  double radius_of(std::span<const int> feature) const {
+    if (varying_.radius.empty()) return radius_of(feature.front());
+    double greatest = 0;
+    for (const int point : feature) {
+      const double own = varying_.radius[static_cast<std::size_t>(point)];
+      greatest = std::max(greatest, own >= 0 ? own : radius_of(point));
+    }
+    return greatest;
+  }
+  const ContactPointNumbers& varying() const { return varying_; }
   bool may_touch(int body_a, int body_b) const {
     const ContactBody &a = bodies_[static_cast<std::size_t>(body_a)],
                       &b = bodies_[static_cast<std::size_t>(body_b)];

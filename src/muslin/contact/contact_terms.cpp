@@ -140,10 +140,12 @@ class Patch {
   }
 
  private:
-  /// The triangles of the patch that share an edge or a corner: their number, and the least of their numbers.
+  /// The triangles of the patch that share an edge or a corner: their count, the least of their numbers, and
+  /// the greatest thickness. Features without double counting must be no thicker than their triangles.
   struct Feature {
     int triangles = 0;
     double thickness = std::numeric_limits<double>::infinity(), range = thickness, stiffness = thickness;
+    double thickest = 0;
   };
 
   static bool is_again(const Vec3i& three, int i) {
@@ -177,6 +179,7 @@ class Patch {
       if (k == size()) continue;
       ++result.triangles;
       result.thickness = std::min(result.thickness, pair(k).thickness);
+      result.thickest = std::max(result.thickest, pair(k).thickness);
       result.range = std::min(result.range, ranges_[k]);
       result.stiffness = std::min(result.stiffness, stiffnesses_[k]);
     }
@@ -202,6 +205,7 @@ class Patch {
   void add_corner(std::size_t k, int corner, std::vector<ContactTerm>& out) const {
     const std::span<const int> triangles = surface_.triangles_at_point(corner);
     if (!is_first(k, triangles)) return;
+    const Feature c = feature(triangles);
     if (corners_only_) {
       // The search finds the centre of a sphere and corners only with the corners' triangles.
       const std::uint64_t key =
@@ -211,12 +215,11 @@ class Patch {
            {vertex_, corner, -1, -1},
            -1,
            key,
-           pair(0).thickness,
+           c.thickest,
            pair(0).range,
            stiffnesses_[0]},
           out);
     }
-    const Feature c = feature(triangles);
     if (!(c.range > 0)) return;
     // Each triangle but the first at an edge adds one to Σ (n_e − 1).
     int coefficient = 1 - c.triangles;

@@ -69,6 +69,7 @@ CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record
   std::vector<int> body_of_point;
   std::vector<ContactBody> bodies;
   std::vector<ContactPlane> planes;
+  ContactPointNumbers varying;
   for (const ContactRecord::Body& body : record.bodies) {
     const int place = run.find_body(body.name), first = static_cast<int>(body_of_point.size());
     const Mesh& skin = run.mesh(place, SurfaceKind::skin);
@@ -102,6 +103,10 @@ CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record
       contact_.faces.insert(contact_.faces.end(), cut.faces.begin(), cut.faces.end());
     }
     body_of_point.resize(body_of_point.size() + rest.size(), owner);
+    if (!body.radii.empty()) {
+      varying.radius.resize(contact_.rest.size(), -1.0);
+      varying.radius.insert(varying.radius.end(), body.radii.begin(), body.radii.end());
+    }
     contact_.rest.insert(contact_.rest.end(), rest.begin(), rest.end());
     contact_.names.push_back(body.name);
     ContactBody contact_body;
@@ -122,9 +127,10 @@ CachedSurfaces::CachedSurfaces(const RunReader& run, const ContactRecord& record
       for (int& point : side) point += points_added_before(record, point);
   contact_.distance = record.distance;
   contact_.map = std::make_shared<SurfaceMap>(SurfaceMap::identity(contact_.rest.size()));
-  contact_.surface = std::make_shared<ContactSurface>(std::move(triangles), std::move(body_of_point),
-                                                      std::move(bodies), std::move(planes),
-                                                      ContactRules(std::move(rules), contact_.rest.size()));
+  if (!varying.radius.empty()) varying.radius.resize(contact_.rest.size(), -1.0);
+  contact_.surface = std::make_shared<ContactSurface>(
+      std::move(triangles), std::move(body_of_point), std::move(bodies), std::move(planes),
+      ContactRules(std::move(rules), contact_.rest.size()), std::move(varying));
 }
 
 std::vector<Vec3> CachedSurfaces::points(int frame) const {

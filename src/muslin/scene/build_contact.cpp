@@ -73,6 +73,7 @@ class ContactBuilder {
       body_of_point_.push_back(static_cast<int>(bodies_.size()));
     }
     append(part.varying.friction, part.rest.size(), varying_.friction);
+    append(part.varying.radius, part.rest.size(), varying_.radius);
     rest_.insert(rest_.end(), part.rest.begin(), part.rest.end());
     for (const Vec3i& triangle : part.triangles)
       triangles_.emplace_back(triangle + Vec3i::Constant(first_point));

@@ -233,6 +233,11 @@ std::optional<ContactPart> ShellBody::contact_part() const {
   part.varying.friction = frictions();
   part.body.layer = settings.layer;
   part.body.radius = own().thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;
+  if (const MappedNumber* map = find_map(maps, "thickness")) {
+    part.varying.radius = map->numbers();
+    for (double& radius : part.varying.radius) radius /= 2;
+    part.body.radius = *std::max_element(part.varying.radius.begin(), part.varying.radius.end());
+  }
   part.body.stiffness = contact_stiffness_share * mean_modulus();
   // A body without stretch resistance still needs contact to carry its weight.
   if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;

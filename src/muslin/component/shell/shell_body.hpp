@@ -2,7 +2,8 @@
 // between them carry membrane and bending energy.
 //
 // Contact sees its triangles, thickened by half its thickness. The thickness is that of the settings, or else
-// 0.5 mm, but at most a tenth of its mean edge. The stiffness of a contact is 0.15 × its mean membrane
+// 0.5 mm, but at most a tenth of its mean edge; where a map varies it, edges and triangles have the greatest
+// of their vertices. The stiffness of a contact is 0.15 × its mean membrane
 // modulus [N/m], the mean over its area where it has several fabrics.
 #pragma once
 

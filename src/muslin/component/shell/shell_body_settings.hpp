@@ -30,7 +30,7 @@ struct ShellBodySettings {
   double rest_scale_warp = 1;             ///< rest length over that of the mesh or the rest mesh
   std::optional<double> rest_scale_weft;  ///< default: as warp
   double rest_scale_share = 1;            ///< of the change of rest lengths that has come about
-  schema::Variations variations;          ///< of the three numbers before
+  schema::Variations variations;          ///< of numbers above
   Compression compression = Compression::buckling;
   std::optional<double> stretch_limit;  ///< of length to rest length in every direction; default: none
 

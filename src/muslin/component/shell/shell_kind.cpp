@@ -95,6 +95,7 @@ schema::Table declare_shell() {
       {schema::number("thickness", &Own::thickness)
            .unit("m")
            .range({0, largest_coordinate, false})
+           .varies(&Own::variations, {.map = true})
            .otherwise("see below")
            .means("thickness in contact"),
        schema::path("rest_mesh", &Own::rest_mesh, &Own::rest_mesh_place)
