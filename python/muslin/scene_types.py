@@ -238,6 +238,7 @@ BodyFabric = TypedDict(
     {
         "faces": Required[str],  # a face group of the mesh (OBJ `g`), or a material of its file (`usemtl` of OBJ, materials of glTF)
         "material": Required[Union[str, "MaterialOfAShell"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of its faces; vertices of several fabrics have that of the last one with its own
     },
     total=False,
 )
@@ -320,6 +321,7 @@ Pressure = TypedDict(
         "name": Optional[str],  # name in messages
         "body": Optional[str],  # a shell that is closed or nearly closed; flat lids close its holes
         "pressure": Required[Union[float, "ANumberOverTime"]],  # excess over the outside, constant or `{ keyframes = [{ time = …, value = … }, …] }`; of a gas: its excess while the surface encloses the volume at rest [Pa]
+        "weight": Optional[Union[float, "ANumberThatVaries"]],  # factor of the pressure at each vertex; of a gas always 1
         "gas": Optional[bool],  # `true`: a fixed amount of gas at a constant temperature, whose pressure falls as the volume grows
         "atmosphere": Optional[float],  # pressure outside, for a gas [Pa]
         "from": Optional[float],  # time when it begins to act [s]
@@ -684,7 +686,7 @@ LatticeBody = TypedDict(
         "velocity": Optional[Vector],  # velocity at the start [m/s]
         "contact": Optional[bool],  # `false` excludes the body from contact
         "self_contact": Optional[bool],  # `false` excludes contact of the body with itself
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour of the body in pictures: red, green, blue [sRGB 0 to 1]
     },
@@ -697,7 +699,7 @@ ShellBody = TypedDict(
         "name": Optional[str],  # used in file names, messages and by pins; different for each body
         "mesh": Required[Path],  # `.obj`, `.ply`, `.stl`, `.gltf`, `.glb`, `.dae` or `.fbx`
         "model": Required[Literal["shell"]],  # `"lattice"`: voxels with springs, filled into the mesh · `"shell"`: the mesh itself as [thin cloth](shells.md)
-        "thickness": Optional[float],  # thickness in contact [m]
+        "thickness": Optional[Union[float, "ANumberThatVaries"]],  # thickness in contact [m]
         "rest_mesh": Optional[Path],  # a mesh with the same polygons in the stress-free shape, cut along seams or not; `scale` applies to it
         "rest": Optional[Literal["mesh", "uv"]],  # `"mesh"`: the stress-free shape is that of `rest_mesh`, or else of the mesh · `"uv"`: the texture coordinates are the flat pattern
         "uv_scale": Optional[float],  # length of one unit of the texture, only with `rest = "uv"` [m]
@@ -716,7 +718,7 @@ ShellBody = TypedDict(
         "velocity": Optional[Vector],  # velocity at the start [m/s]
         "contact": Optional[bool],  # `false` excludes the body from contact
         "self_contact": Optional[bool],  # `false` excludes contact of the body with itself
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour of the body in pictures: red, green, blue [sRGB 0 to 1]
     },

@@ -9,7 +9,7 @@ namespace muslin {
 
 void Holds::step(std::span<const Pin> pins, double time_begin, double time_end, ConstVectors positions,
                  std::span<std::uint8_t> fixed, Vectors targets) {
-  assert(time_end > time_begin);
+  assert(time_end >= time_begin);  // an untangled start stands still
   assert(fixed.size() == positions.size() && targets.size() == positions.size());
   if (holding.size() != pins.size()) {
     std::size_t count = 0;
