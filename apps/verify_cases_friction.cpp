@@ -231,9 +231,10 @@ std::vector<Comparison> slides_off_a_turning_plane() {
 /// closed form, and from there slowly: it grows on until the strip has slid a millimetre, which tells.
 double ratio_that_slides(int cells, double friction) {
   const Experiment experiment;
-  experiment.level_sheet("strip.obj", 0.8, 0.02, cells, cells / 30);
+  const int rows = cells / 30;
+  experiment.level_sheet("strip.obj", 0.8, 0.02, cells, rows);
   constexpr int frame_rate = 60, quick = 3, slow = 8;  // frames per second, and seconds
-  const double limit = std::exp(friction * std::numbers::pi), load = 1.0 / (cells / 30 + 1);
+  const double limit = std::exp(friction * std::numbers::pi), load = 1.0 / (rows + 1);  // per vertex of an end
   Simulation simulation = experiment.start(fmt::format(
       R"(
 [time]

@@ -15,6 +15,8 @@ Array<Number, -1> column(const std::vector<Diagnostics>& rows, Number Diagnostic
   return taken(std::move(numbers));
 }
 
+using RowState = nb::typed<nb::dict, nb::str, nb::object>;
+
 /// Takes the numbers of a row by their names.
 struct RowWriter {
   nb::dict& state;
@@ -115,12 +117,12 @@ void bind_diagnostics(nb::module_& m) {
       .def_ro("wall_ms", &Diagnostics::wall_ms, "Time that this frame took.")
       .def("__getstate__",
            [](const Diagnostics& row) {
-             nb::dict state;
+             RowState state;
              each_number(row, RowWriter{state});
              return state;
            })
       .def("__setstate__",
-           [](Diagnostics& row, const nb::dict& state) {
+           [](Diagnostics& row, const RowState& state) {
              new (&row) Diagnostics();
              each_number(row, RowReader{state});
            })

@@ -281,7 +281,7 @@ void bind_simulation(nb::module_& m) {
            "Another simulation of the same model and state, without forces in Python.")
       .def(
           "__deepcopy__", [](nb::handle_t<Self> self, const nb::dict&) { return copy_of(self); }, "memo"_a,
-          nb::sig("def __deepcopy__(self, memo: dict) -> Simulation"))
+          nb::sig("def __deepcopy__(self, memo: dict[int, object]) -> Simulation"))
       .def("checkpoint", &checkpoint, "The complete state: going on from it gives the same bits.")
       .def(
           "restore",

@@ -87,6 +87,8 @@ void append_subsets(WholeFile& out, const Mesh& mesh, const std::map<std::string
   for (const MeshGroup& group : mesh.groups)
     if (!group.faces.empty())
       append_subset(out, '"' + identifier(group.name, taken) + '"', "groups", group.faces, "");
+  if (!mesh.materials.empty())
+    out.append("\n        uniform token subsetFamily:materialBind:familyType = \"nonOverlapping\"\n");
   for (const MeshMaterial& material : mesh.materials)
     append_subset(
         out,
