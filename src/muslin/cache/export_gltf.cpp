@@ -27,7 +27,7 @@ constexpr int vertex_buffer = 34962, index_buffer = 34963;
 struct SplitMesh {
   std::vector<int> vertices;  ///< the mesh's vertex of each glTF vertex
   std::vector<float> uvs;     ///< 2 per glTF vertex, empty without texture coordinates
-  /// Of the triangles of each material of the mesh, and last of those without one.
+  /// Three per triangle: a list for each material of the mesh, then one for faces without a material.
   std::vector<std::vector<std::uint32_t>> indices;
 };
 
