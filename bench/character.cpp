@@ -45,7 +45,10 @@ enum Bone {
 constexpr double blend = 0.014;          // radius of the smooth union
 constexpr double skin_softness = 0.018;  // over which bones share the skin
 constexpr double waist = 0.62, under_arms = 0.715, hips = 0.55, hem = 0.3;
-constexpr double sleeve_from = 0.45;  // along the upper arm
+constexpr double sleeve_from = 0.45;                  // along the upper arm
+constexpr double skin_cell = 0.015;                   // of the mesh of the skin
+constexpr int dress_around = 52, sleeve_around = 19;  // vertices of a ring
+constexpr int frames = 60, frame_rate = 24;
 
 /// A cone with round ends.
 struct Part {
@@ -406,23 +409,23 @@ std::vector<Vec3> Character::carried(ConstVectors rest, Bone bone, double time) 
 
 }  // namespace
 
-std::string write_character(const std::filesystem::path& folder, const CharacterSettings& settings) {
+std::string write_character(const std::filesystem::path& folder, int index) {
   make_directory(folder);
-  const Character character(settings.index);
+  const Character character(index);
   const auto write = [&](const char* name, const Mesh& mesh, const auto& place) {
     write_atomically(folder / (std::string(name) + ".obj"), to_obj(mesh, mesh.positions), false);
     Pc2Writer motion(folder / (std::string(name) + ".pc2"), mesh.positions.size(), OutputFile::Mode::replace);
-    for (int frame = 0; frame <= character_frames; ++frame)
-      motion.append(place(mesh.positions, static_cast<double>(frame) / character_frame_rate));
+    for (int frame = 0; frame <= frames; ++frame)
+      motion.append(place(mesh.positions, static_cast<double>(frame) / frame_rate));
     motion.close();
   };
   const auto follow = [&](Bone bone) {
     return [&character, bone](ConstVectors rest, double time) { return character.carried(rest, bone, time); };
   };
-  write("skin", character.skin(settings.cell),
+  write("skin", character.skin(skin_cell),
         [&](ConstVectors rest, double time) { return character.posed(rest, time); });
-  write("dress", character.dress(settings.around), follow(chest));
-  write("sleeve", character.sleeve(std::max(12, settings.around * 3 / 8)), follow(left_arm));
+  write("dress", character.dress(dress_around), follow(chest));
+  write("sleeve", character.sleeve(sleeve_around), follow(left_arm));
   constexpr std::array<const char*, 3> fabrics{"cotton", "polyester", "wool"};
   const auto fabric = [&](int i) { return fabrics[static_cast<std::size_t>(i) % fabrics.size()]; };
   std::string scene = fmt::format(
@@ -430,9 +433,9 @@ std::string write_character(const std::filesystem::path& folder, const Character
       "[[collider]]\nname = \"skin\"\nshape = \"mesh\"\nmesh = \"skin.obj\"\nsequence = \"skin.pc2\"\n"
       "colour = [0.76, 0.57, 0.46]\n\n[[force]]\ntype = \"gravity\"\n\n[[force]]\ntype = \"wind\"\n"
       "velocity = [0, 0, 0]\n",
-      character.pose(), static_cast<double>(character_frames) / character_frame_rate, character_frame_rate);
+      character.pose(), static_cast<double>(frames) / frame_rate, frame_rate);
   for (const auto& [name, material] :
-       {std::pair{"dress", fabric(settings.index)}, std::pair{"sleeve", fabric(settings.index / 3 + 1)}}) {
+       {std::pair{"dress", fabric(index)}, std::pair{"sleeve", fabric(index / 3 + 1)}}) {
     scene += fmt::format(
         "\n[[body]]\nname = \"{0}\"\nmodel = \"shell\"\nmesh = \"{0}.obj\"\nwarp = [0, 1, 0]\nmaterial = "
         "\"{1}\"\n\n[[pin]]\n"

@@ -12,9 +12,7 @@ int main(int count, char** words) {
     return 2;
   }
   try {
-    muslin::bench::CharacterSettings settings;
-    settings.index = std::atoi(words[1]);
-    std::printf("%s\n", muslin::bench::write_character(words[2], settings).c_str());
+    std::printf("%s\n", muslin::bench::write_character(words[2], std::atoi(words[1])).c_str());
   } catch (const muslin::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -46,6 +46,19 @@ TEST(Thicken, AFlatRectangleBecomesExactlyABox) {
   }
 }
 
+TEST(Thicken, SidesAndWallsHaveTheMaterialOfTheirFace) {
+  Mesh sheet = shapes::rectangle(2, 1, 2, 1);
+  sheet.materials = {{"blue", {0}}, {"red", {1}}};
+  const Mesh solid = thicken(sheet, 0.1);
+  ASSERT_EQ(solid.materials.size(), 2U);
+  for (std::size_t m = 0; m < 2; ++m) {
+    EXPECT_EQ(solid.materials[m].faces.size(), 5U) << "two sides and three walls";
+    for (const int f : solid.materials[m].faces)
+      for (const int v : solid.face(static_cast<std::size_t>(f)))
+        EXPECT_LE(std::abs(solid.positions[static_cast<std::size_t>(v)].x() - (m == 0 ? 0.5 : 1.5)), 0.5);
+  }
+}
+
 TEST(Thicken, FlippedSheetGivesTheSameSolid) {
   const Mesh flag = shapes::rectangle(10, 6, 5, 3);
   EXPECT_NEAR(volume(thicken(shapes::selected(flag, all, all), 0.2)), 12, 1e-12);

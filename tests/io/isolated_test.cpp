@@ -63,12 +63,16 @@ TEST(Isolated, MeshesComeBackAsTheyWere) {
   MeshFile file = read_mesh_from(fixtures::obj(), ".obj", "a.obj");
   file.note = "a note";
   file.attributes = {{"paint", {0.5, 1}}};
+  file.mesh.materials = {{"Blue Cotton", {0}}};
   const MeshFile back = from_bytes(to_bytes(file));
   EXPECT_EQ(back.mesh.positions, file.mesh.positions);
   EXPECT_EQ(back.mesh.uvs, file.mesh.uvs);
   EXPECT_EQ(back.mesh.corner_uvs, file.mesh.corner_uvs);
   EXPECT_EQ(back.mesh.face_vertices, file.mesh.face_vertices);
   EXPECT_EQ(back.mesh.groups.size(), file.mesh.groups.size());
+  ASSERT_EQ(back.mesh.materials.size(), 1u);
+  EXPECT_EQ(back.mesh.materials[0].name, "Blue Cotton");
+  EXPECT_EQ(back.mesh.materials[0].faces, std::vector<int>{0});
   EXPECT_EQ(back.note, file.note);
   EXPECT_EQ(back.attributes[0].values, file.attributes[0].values);
   const std::string bytes = to_bytes(file);

@@ -55,6 +55,11 @@ void expect_same(const Mesh& a, const Mesh& b) {
     EXPECT_EQ(a.groups[g].faces, b.groups[g].faces);
     EXPECT_EQ(a.groups[g].vertices, b.groups[g].vertices);
   }
+  ASSERT_EQ(a.materials.size(), b.materials.size());
+  for (std::size_t m = 0; m < a.materials.size(); ++m) {
+    EXPECT_EQ(a.materials[m].name, b.materials[m].name);
+    EXPECT_EQ(a.materials[m].faces, b.materials[m].faces);
+  }
 }
 
 class Folder : public testing::Test {

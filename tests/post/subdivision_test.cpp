@@ -103,7 +103,11 @@ TEST(Subdivision, RigidMotionsMoveThePointsRigidly) {
 TEST(Subdivision, GroupsHoldThePartsOfTheirFaces) {
   Mesh mesh = quads(2);
   mesh.groups = {{"left", {0, 2}, {0, 1, 3, 4, 6, 7}}, {"corner", {}, {0, 1, 3, 4}}};
+  mesh.materials = {{"blue", {0, 2}}, {"red", {1}}};
   const Mesh fine = Subdivision(mesh, 1).mesh();
+  ASSERT_EQ(fine.materials.size(), 2U);
+  EXPECT_EQ(fine.materials[0].faces, fine.groups[0].faces) << "materials go to the same parts";
+  EXPECT_EQ(fine.materials[1].faces.size(), 4U);
   ASSERT_EQ(fine.groups.size(), 2U);
   EXPECT_EQ(fine.groups[0].faces.size(), 8U);
   EXPECT_EQ(fine.groups[0].vertices.size(), 15U);

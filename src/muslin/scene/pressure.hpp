@@ -25,11 +25,11 @@ struct Table;
 
 struct MUSLIN_API PressureSettings {
   std::string name, body;
-  KeyedNumber pressure;        ///< excess over the outside [Pa]; of a gas: at the rest volume
-  double weight = 1;           ///< of the pressure at a vertex
+  KeyedNumber pressure;           ///< excess over the outside [Pa]; of a gas: at the rest volume
+  double weight = 1;              ///< of the pressure at a vertex
   schema::Variations variations;  ///< of `weight`, by a map
-  bool gas = false;            ///< a fixed amount of gas at constant temperature, not a given pressure
-  double atmosphere = 101325;  ///< outside, for a gas [Pa]
+  bool gas = false;               ///< a fixed amount of gas at constant temperature, not a given pressure
+  double atmosphere = 101325;     ///< outside, for a gas [Pa]
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Place place;
 };

@@ -96,11 +96,11 @@ struct ProbeSettings {
 
 struct Scene {
   std::string title;
-  std::filesystem::path file;         ///< where it was read from
-  std::string text;                   ///< the file as it was read
+  std::filesystem::path file;          ///< where it was read from
+  std::string text;                    ///< the file as it was read
   std::vector<std::string> overrides;  ///< KEY=VALUE that replaced settings of the text
-  std::string resolved;               ///< JSON: every setting with its value, defaults included
-  std::vector<std::string> warnings;  ///< legal but probably unintended settings
+  std::string resolved;                ///< JSON: every setting with its value, defaults included
+  std::vector<std::string> warnings;   ///< legal but probably unintended settings
   TimeSettings time;
   SolverSettings solver;
   std::vector<BodySettings> bodies;
