@@ -74,6 +74,7 @@ Columns columns_of(const std::vector<Diagnostics>& rows) {
   columns["crossings"] = column(rows, &Diagnostics::crossings);
   columns["held_back"] = column(rows, &Diagnostics::held_back);
   columns["penetration"] = column(rows, &Diagnostics::penetration);
+  columns["behind"] = column(rows, &Diagnostics::behind);
   return columns;
 }
 
@@ -105,6 +106,7 @@ void bind_diagnostics(nb::module_& m) {
           "parted.")
       .def_ro("held_back", &Diagnostics::held_back,
               "Vertices moved along keyframes that an obstacle holds back.")
+      .def_ro("behind", &Diagnostics::behind, "Largest distance of such a vertex from its path [m].")
       .def_ro("steps", &Diagnostics::steps, "Of this frame.")
       .def_ro("converged_steps", &Diagnostics::converged_steps,
               "Steps of this frame that ended within their tolerance.")

@@ -110,7 +110,7 @@ def test_reads_all_there_is(finished):
     with open(finished / "diagnostics.csv") as table:
         rows = list(csv.DictReader(table))
     for name in ("kinetic", "elastic", "max_stretch", "min_distance", "steps", "converged_steps", "error", "unbalanced",
-                 "crossings", "held_back", "penetration"):
+                 "crossings", "held_back", "penetration", "behind"):
         assert run.diagnostics[name].tolist() == [float(row[name]) for row in rows]
     assert json.loads((finished / "run.json").read_text())["title"] == run.title
     assert "9 frames" in repr(run)

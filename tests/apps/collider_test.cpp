@@ -267,6 +267,8 @@ TEST(ColliderRun, ReportsHeldBackVertices) {
   const auto then = held_back();
   EXPECT_GT(then["most"], 0);
   EXPECT_EQ(then["frames"].back(), 4);
+  // At the end of frame 3, 0.125 s, its path leads 43.75 mm down, of which 20 mm are free.
+  EXPECT_NEAR(then["farthest"], 0.02375, 0.001);
   const auto freed = run(scratch, {"run", scene, "-o", out, "--quiet", "--resume"});
   EXPECT_EQ(freed.code, 0) << freed.err;
   EXPECT_THAT(freed.err, HasSubstr("they have caught up"));

@@ -109,11 +109,11 @@ TEST(RunQuality, WarnsOfMissedTolerancesHeldBackVerticesAndCrossings) {
   row.frame = 11, row.converged_steps = 200, row.error = 0;
   quality.add(row);
   EXPECT_THAT(warnings_of(quality), testing::IsEmpty()) << "few, and not at the end";
-  row.frame = 12, row.converged_steps = 100, row.held_back = 3, row.crossings = 2;
+  row.frame = 12, row.converged_steps = 100, row.held_back = 3, row.behind = 0.0042, row.crossings = 2;
   quality.add(row);
-  EXPECT_THAT(warnings_of(quality),
-              testing::ElementsAre(HasSubstr("in frames 10 and 12"), HasSubstr("they still are behind"),
-                                   HasSubstr("2 pairs of triangles still cross")));
+  EXPECT_THAT(warnings_of(quality), testing::ElementsAre(HasSubstr("in frames 10 and 12"),
+                                                         HasSubstr("by up to 4.2 mm; they still are behind"),
+                                                         HasSubstr("2 pairs of triangles still cross")));
 }
 
 TEST(RunQuality, WarnsOfExceededStretchLimits) {
@@ -177,7 +177,7 @@ TEST(RunDirectory, HasTheDocumentedFiles) {
       testing::StartsWith("frame,time,kinetic,elastic,potential,work,dissipated,momentum_x,momentum_y,"
                           "momentum_z,newton_iterations,linear_iterations,residual,max_stretch,"
                           "min_distance,wall_ms,steps,converged_steps,error,unbalanced,crossings,"
-                          "held_back,penetration\n0,0,0,0,"));
+                          "held_back,penetration,behind\n0,0,0,0,"));
   EXPECT_THAT(bytes_of(scratch / "run/diagnostics.csv"), HasSubstr(",inf,"));
   EXPECT_THAT(bytes_of(scratch / "run/probes.csv"),
               testing::StartsWith("frame,time,name,x,y,z,vx,vy,vz\n0,0,tip,1.5,0,0.5,0,0,0\n1,"));

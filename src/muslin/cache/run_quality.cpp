@@ -27,8 +27,8 @@ std::string missed_text(const RunQuality& quality) {
 std::string held_back_text(const RunQuality& quality) {
   return fmt::format(
       "pins or colliders that move could not follow their keyframes in {}: something held back up to {} of "
-      "their vertices; {}",
-      describe_frames(quality.frames_held_back), quality.max_held_back,
+      "their vertices, by up to {:.3g} mm; {}",
+      describe_frames(quality.frames_held_back), quality.max_held_back, 1000 * quality.farthest_behind,
       ends_in(quality.frames_held_back, quality.last_frame) ? "they still are behind"
                                                             : "they have caught up");
 }
@@ -70,6 +70,7 @@ void RunQuality::add(const Diagnostics& row) {
   if (row.converged_steps < row.steps) frames_missed.push_back(row.frame);
   if (row.held_back > 0) frames_held_back.push_back(row.frame);
   max_held_back = std::max(max_held_back, row.held_back);
+  farthest_behind = std::max(farthest_behind, row.behind);
   if (row.crossings > 0) frames_crossing.push_back(row.frame);
   crossings_at_end = row.crossings;
   last_frame = row.frame;

@@ -25,6 +25,7 @@ struct MUSLIN_API RunQuality {
   std::vector<int> frames_missed;     ///< with steps that missed their tolerance
   std::vector<int> frames_held_back;  ///< at whose end pins or colliders were behind their keyframes
   int max_held_back = 0;              ///< vertices, in the worst frame
+  double farthest_behind = 0;         ///< of a held-back vertex from its path, in the worst frame [m]
   std::vector<int> frames_crossing;   ///< at whose end triangles cross
   int crossings_at_end = 0;           ///< pairs of triangles
   std::vector<Overstretched> overstretched;

@@ -446,7 +446,9 @@ void RunWriter::Impl::write_summary(RunStatus status, const std::string& reason)
                         {"worst_error", quality.worst_error},
                         {"frames_missed", quality.frames_missed}};
   run["energy"] = {{"material_work", simulation.diagnostics().material_work}};
-  run["held_back"] = {{"frames", quality.frames_held_back}, {"most", quality.max_held_back}};
+  run["held_back"] = {{"frames", quality.frames_held_back},
+                      {"most", quality.max_held_back},
+                      {"farthest", quality.farthest_behind}};
   run["crossings"] = {{"at_end", quality.crossings_at_end}, {"frames", quality.frames_crossing}};
   run["overstretched"] = Json::array();
   for (const RunQuality::Overstretched& shell : quality.overstretched) {

@@ -1,5 +1,6 @@
 #include "muslin/cache/tables.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <limits>
@@ -21,12 +22,19 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-constexpr std::size_t all_columns = 23, first_columns = 16;  // of this version, of earlier ones
+constexpr std::size_t all_columns = 24;
 
-/// Header of earlier versions, without the columns after wall_ms.
-std::string first_header() {
-  constexpr std::string_view last = ",wall_ms";
-  return std::string(diagnostics_header.substr(0, diagnostics_header.find(last) + last.size())) + "\n";
+/// Last columns of the tables of this version and of earlier ones, whose further columns are missing.
+constexpr std::array<std::string_view, 3> last_columns{",behind", ",penetration", ",wall_ms"};
+
+/// Returns the number of columns of a table of diagnostics; 0 if `text` is none.
+std::size_t columns_of(std::string_view text) {
+  for (const std::string_view last : last_columns) {
+    const std::string_view header = diagnostics_header.substr(0, diagnostics_header.find(last) + last.size());
+    if (text.starts_with(header) && text.substr(header.size()).starts_with('\n'))
+      return static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -34,19 +42,19 @@ std::string first_header() {
 const std::string_view diagnostics_header =
     "frame,time,kinetic,elastic,potential,work,dissipated,momentum_x,momentum_y,momentum_z,"
     "newton_iterations,linear_iterations,residual,max_stretch,min_distance,wall_ms,steps,converged_steps,"
-    "error,unbalanced,crossings,held_back,penetration\n";
+    "error,unbalanced,crossings,held_back,penetration,behind\n";
 const std::string_view probes_header = "frame,time,name,x,y,z,vx,vy,vz\n";
 const std::string_view pins_header = "frame,time,name,x,y,z,mean,largest\n";
 const std::string_view attachments_header = "frame,time,name,x,y,z,mean,largest,holding\n";
 const std::string_view stretch_header = "frame,stretch,limit,body\n";
 
 std::string diagnostics_row(const Diagnostics& row) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{},{},{}\n", row.frame,
-                     row.time, row.kinetic, row.elastic, row.potential, row.work, row.dissipated,
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{},{},{},{}\n",
+                     row.frame, row.time, row.kinetic, row.elastic, row.potential, row.work, row.dissipated,
                      row.momentum.x(), row.momentum.y(), row.momentum.z(), row.newton_iterations,
                      row.linear_iterations, row.residual, row.max_stretch, row.min_distance, row.wall_ms,
                      row.steps, row.converged_steps, row.error, row.unbalanced, row.crossings, row.held_back,
-                     row.penetration);
+                     row.penetration, row.behind);
 }
 
 std::string probe_rows(const Simulation& simulation) {
@@ -90,14 +98,13 @@ std::string attachment_rows(const Simulation& simulation) {
 
 std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path) {
   const std::string text = read_file(path);
-  const bool complete = text.starts_with(diagnostics_header);
-  if (!complete && !text.starts_with(first_header())) {
+  const std::size_t columns = columns_of(text);
+  if (columns == 0) {
     throw Error(ErrorKind::input, {path.string(), 1}, "this is not a table of diagnostics",
                 "run the scene again");
   }
   std::vector<Diagnostics> rows;
   int line = 1;
-  const std::size_t columns = complete ? all_columns : first_columns;
   for (std::size_t at = text.find('\n') + 1; at < text.size();) {
     const std::size_t end = text.find('\n', at);
     if (end == std::string::npos) break;
@@ -135,6 +142,7 @@ std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path) {
     row.crossings = static_cast<int>(numbers[20]);
     row.held_back = static_cast<int>(numbers[21]);
     row.penetration = numbers[22];
+    row.behind = numbers[23];
     rows.push_back(row);
     at = end + 1;
   }

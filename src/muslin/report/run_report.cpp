@@ -159,7 +159,9 @@ Json report_json(const RunReader& run, const RunReport& report) {
                          {"converged_steps", quality.converged_steps},
                          {"worst_error", quality.worst_error},
                          {"frames_missed", quality.frames_missed}};
-  json["held_back"] = {{"frames", quality.frames_held_back}, {"most", quality.max_held_back}};
+  json["held_back"] = {{"frames", quality.frames_held_back},
+                       {"most", quality.max_held_back},
+                       {"farthest", quality.farthest_behind}};
   json["smallest_gap"] = gap_json(run, evidence);
   json["largest_stretch"] = stretch_json(run, evidence);
   json["crossings"] = crossings_json(evidence);

@@ -37,6 +37,8 @@ struct Diagnostics {
   /// or beneath a plane.
   double min_distance = 0;
   int held_back = 0;        ///< vertices moved along keyframes that an obstacle holds back
+  /// Largest distance of such a vertex from its place on its path, at the end of the frame [m].
+  double behind = 0;
   int steps = 0;            ///< of this frame
   int converged_steps = 0;  ///< number of them that ended within tolerance
   double error = 0;         ///< largest estimated error of a step of this frame, as a displacement [m]
@@ -65,6 +67,7 @@ struct Diagnostics {
     arrays("diagnostics.unbalanced", self.unbalanced);
     arrays("diagnostics.min_distance", self.min_distance);
     arrays("diagnostics.held_back", self.held_back);
+    arrays("diagnostics.behind", self.behind);
     arrays("diagnostics.steps", self.steps);
     arrays("diagnostics.converged_steps", self.converged_steps);
     arrays("diagnostics.error", self.error);

@@ -22,6 +22,14 @@ std::shared_ptr<const Model> not_null(std::shared_ptr<const Model> model) {
   return model;
 }
 
+/// Returns the largest distance of a held vertex from its target in the last step [m].
+double farthest_behind(ConstVectors x, const Scratch& scratch) {
+  double farthest = 0;
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (scratch.fixed[v] != 0) farthest = std::max(farthest, (scratch.targets[v] - x[v]).norm());
+  return farthest;
+}
+
 }  // namespace
 
 Simulation::Impl::Impl(std::shared_ptr<const Model> the_model, const SimulationOptions& the_options,
@@ -167,6 +175,7 @@ void Simulation::Impl::finish_frame() {
   row.residual = counts.residual;
   row.min_distance = counts.smallest_gap;
   row.held_back = counts.held_back;
+  if (row.held_back > 0) row.behind = farthest_behind(state.motion.positions, scratch);
   row.steps = counts.steps;
   row.converged_steps = counts.converged_steps;
   row.error = counts.error;
