@@ -59,6 +59,22 @@ TEST(Untangle, ASleeveInsideTheArmEverywhereComesOut) {
   for (const Vec3& x : points(simulation, "sleeve")) EXPECT_GT(std::hypot(x.x(), x.z()), 0.0498);
 }
 
+TEST(Untangle, ATightSleeveOfStiffClothComesOutOfACoarseArm) {
+  // The arm has ten corners, between which it is inside the sleeve: contours are everywhere. To be outside,
+  // the sleeve has to stretch by some percent, and its membrane is five times as stiff as contact.
+  TangledScene scene;
+  scene.cloth("'wool'").tube("sleeve", 0.2, 19, 10, [](double, double) { return 0.049; }, false);
+  scene.tube("arm", 0.4, 10, 16, [](double, double) { return 0.05; }, true);
+  Simulation simulation(scene.build());
+  EXPECT_GT(simulation.untangled().crossings, 200U);
+  expect_repaired(simulation);
+  EXPECT_EQ(simulation.untangled().lost_left, 0U);
+  const Diagnostics last = simulation.diagnostics();
+  EXPECT_EQ(last.converged_steps, last.steps);
+  EXPECT_LT(last.max_stretch, 1.06);
+  EXPECT_GT(last.min_distance, 0);
+}
+
 TEST(Untangle, ADentInAJacketComesBackOverTheShirt) {
   TangledScene scene;  // two meshes of one grid, so that edges meet edges
   scene.sheet("shirt", 0.4, 40, [](double, double) { return 0.0; });

@@ -88,6 +88,12 @@ class TangledScene {
     return *this;
   }
 
+  /// The material of the shells that follow.
+  TangledScene& cloth(const std::string& material) {
+    material_ = material;
+    return *this;
+  }
+
   TangledScene& add(const std::string& text) {
     text_ += text;
     return *this;
@@ -108,16 +114,15 @@ class TangledScene {
     file << "v " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
   }
   void add_shell(const std::string& name, const std::string& keys) {
-    text_ +=
-        "[[body]]\nname = '" + name + "'\nmesh = '" + name +
-        ".obj'\nmodel = 'shell'\nwarp = [1, 0, 0]\nmaterial = { areal_density = 0.2, membrane_warp = 500, "
-        "membrane_weft = 500, membrane_shear = 200, poisson = 0.2, bending_warp = 1e-5, bending_weft = 1e-5 "
-        "}\n" +
-        keys + "\n";
+    text_ += "[[body]]\nname = '" + name + "'\nmesh = '" + name +
+             ".obj'\nmodel = 'shell'\nwarp = [1, 0, 0]\nmaterial = " + material_ + "\n" + keys + "\n";
   }
 
   std::filesystem::path folder_;
   std::string text_;
+  std::string material_ =
+      "{ areal_density = 0.2, membrane_warp = 500, membrane_weft = 500, membrane_shear = 200, poisson = 0.2, "
+      "bending_warp = 1e-5, bending_weft = 1e-5 }";
 };
 
 /// A dent of 12 mm in a height of 5 mm: its bottom is 7 mm under the plane.

@@ -16,7 +16,7 @@ using test::TangledScene;
 
 /// The points on a wrong side at the start, of the model's points.
 std::vector<LostPoint> wrong_points(const std::shared_ptr<const Model>& model) {
-  return TangleFinder(model->contact).find(model->rest_positions, 1, false).wrong;
+  return TangleFinder(model->contact).find(model->rest_positions, 1).wrong;
 }
 
 TEST(CrossedRegions, OfADentAreItsPointsAndThoseThatItCovers) {

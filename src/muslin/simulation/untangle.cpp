@@ -22,6 +22,9 @@ constexpr int most_steps = 240;           // four seconds
 /// A repair ends if this many steps in a row do not make the tangle smaller, or shallower by this factor.
 constexpr int patience = 30, stuck_after = 3;
 constexpr double shallower = 0.98;
+/// Tight cloth presses against separations: they are made firmer by a factor of 2 after each step that does
+/// not leave less than this share of the tangle.
+constexpr double good_share = 0.9, firmest = 64;
 /// If nothing crosses and only gaps are small, it ends after fewer: contact can go on from there.
 constexpr int patience_if_close = 12;
 constexpr double accuracy = 0.05;  // of a step, over the separations
@@ -37,7 +40,8 @@ class Repair {
   Untangled run(const Progress& progress) {
     Untangled report;
     const std::vector<Vec3> begin = state_.motion.positions;
-    Tangle tangle = find();
+    Persistence persistence;
+    Tangle tangle = find(persistence);
     report.crossings = tangle.crossing.size();
     report.lost = tangle.wrong.size();
     report.close = tangle.close_count;
@@ -56,7 +60,11 @@ class Repair {
       progress.at(static_cast<double>(report.steps) / most_steps, stage);
       if (!step(tangle)) break;
       ++report.steps;
-      tangle = find(since >= stuck_after);
+      const auto before = static_cast<double>(tangle.size());
+      persistence.flattens = since >= stuck_after;
+      tangle = find(persistence);
+      if (static_cast<double>(tangle.size()) > good_share * before)
+        persistence.firmness = std::min(2 * persistence.firmness, firmest);
     }
     report.left = tangle.crossing.size();
     report.lost_left = tangle.wrong.size();
@@ -67,7 +75,9 @@ class Repair {
   }
 
  private:
-  Tangle find(bool stuck = false) { return finder_.find(state_.motion.positions, step_length, stuck); }
+  Tangle find(const Persistence& persistence) {
+    return finder_.find(state_.motion.positions, step_length, persistence);
+  }
 
   void name_places(Untangled& report) const {
     if (report.left == 0) return;

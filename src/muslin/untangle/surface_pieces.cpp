@@ -8,14 +8,17 @@
 namespace muslin {
 namespace {
 
-/// True if the two triangles of an edge pass it in opposite directions.
-bool turned_alike(const Vec3i& first, const Vec3i& second, const ContactSurface::Edge& edge) {
-  const auto forward = [&](const Vec3i& t) {
-    for (int i = 0; i < 3; ++i)
-      if (t[i] == edge[0] && t[(i + 1) % 3] == edge[1]) return true;
-    return false;
-  };
-  return forward(first) != forward(second);
+/// True if triangles pass the edge as often in one direction as in the other.
+bool is_balanced(const ContactSurface& surface, int e) {
+  const ContactSurface::Edge& edge = surface.edges()[at(e)];
+  int sum = 0;
+  for (const int side : surface.triangles_at_edge(e)) {
+    const Vec3i& t = surface.triangles()[at(side)];
+    bool forward = false;
+    for (int i = 0; i < 3; ++i) forward = forward || (t[i] == edge[0] && t[(i + 1) % 3] == edge[1]);
+    sum += forward ? 1 : -1;
+  }
+  return sum == 0;
 }
 
 }  // namespace
@@ -51,10 +54,7 @@ SurfacePieces::SurfacePieces(const ContactSurface& surface, ConstVectors rest)
     if (piece >= 0) pieces_[at(piece)].points.push_back(p);
   }
   for (int e = 0; e < static_cast<int>(surface.edges().size()); ++e) {
-    const ContactSurface::Edge& edge = surface.edges()[at(e)];
-    const std::span<const int> sides = surface.triangles_at_edge(e);
-    if (sides.size() != 2 || !turned_alike(triangles[at(sides[0])], triangles[at(sides[1])], edge))
-      pieces_[at(of_point(edge[0]))].solid = false;
+    if (!is_balanced(surface, e)) pieces_[at(of_point(surface.edges()[at(e)][0]))].solid = false;
   }
 }
 

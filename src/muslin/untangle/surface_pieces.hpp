@@ -22,8 +22,8 @@ class SurfacePieces {
   std::span<const int> triangles(int piece) const { return of(piece).triangles; }
   std::span<const int> points(int piece) const { return of(piece).points; }
   int body(int piece) const { return of(piece).body; }
-  /// True of a piece with an inside: every edge has two triangles, which are turned alike, and its body is
-  /// solid.
+  /// True of a piece with an inside: its body is solid, and triangles pass every edge as often in one
+  /// direction as in the other, also where sheets touch in an edge. Then its winding numbers are whole.
   bool is_solid(int piece) const { return of(piece).solid; }
   /// Rest area around a point [m²].
   double area(int point) const { return areas_[static_cast<std::size_t>(point)]; }

@@ -28,13 +28,17 @@ constexpr double edge_share = 0.25;
 constexpr double edges_at_once = 0.5;
 /// Least sine between an edge and the triangle that it pierces, in the direction of shortening.
 constexpr double least_sine = 0.1;
+/// Least cosine between the line of a sided pair and the right side for that line to tell the side.
+constexpr double clear_cosine = 0.3;
+/// Sided pairs whose cosine is above this are kept from crossing before they are too close.
+constexpr double facing_cosine = 0.5;
 constexpr double perturbation = 1e-9;  // over the size of the surface
 
 }  // namespace
 
 class TangleFinder::Search {
  public:
-  Search(TangleFinder& finder, ConstVectors q, double dt)
+  Search(TangleFinder& finder, ConstVectors q, double dt, double firmness)
       : model_(*finder.model_),
         surface_(*model_.surface),
         pieces_(finder.pieces_),
@@ -43,11 +47,12 @@ class TangleFinder::Search {
         sided_(finder.sided_),
         rules_(surface_.rules().in_force(0)),
         dt_(dt),
+        firmness_(firmness),
         x_(surface_.point_count()) {
     model_.map->apply(q, x_);
   }
 
-  Tangle find(bool stuck) {
+  Tangle find(bool flattens) {
     tangle_.free.parts.reserve(surface_.point_count());
     for (std::size_t p = 0; p < surface_.point_count(); ++p)
       tangle_.free.parts.push_back(pieces_.of_point(static_cast<int>(p)));
@@ -60,7 +65,7 @@ class TangleFinder::Search {
     find_sided();
     add_piercings(piercings);
     add_close();
-    add_folds(stuck);
+    add_folds(flattens);
     for (const auto& [first, second] : sided_) tangle_.free.pairs.push_back({first, second});
     return std::move(tangle_);
   }
@@ -121,7 +126,9 @@ class TangleFinder::Search {
 
   /// Leaves out what has no direction, at triangles without area, and what nothing can push.
   void add(const Separation& s) {
-    if (s.normal.allFinite() && std::isfinite(s.stiffness)) tangle_.separations.push_back(s);
+    if (!s.normal.allFinite() || !std::isfinite(s.stiffness)) return;
+    tangle_.separations.push_back(s);
+    tangle_.separations.back().stiffness *= firmness_;
   }
 
   void add_lost(std::span<const LostPoint> all) {
@@ -243,17 +250,25 @@ class TangleFinder::Search {
       s.normal = geometry.normal;
       double distance = geometry.distance;
       if (!(s.normal.norm() > 0)) s.normal = any_way_out(pair);
+      bool facing = false;
       if (sided) {
-        const Vec3 right = right_side(pair);
-        if (s.normal.dot(right) < 0) {
+        // The line from an edge of a triangle or beside a ridge leads along the surface and tells no side.
+        const double cosine = s.normal.dot(right_side(pair).normalized());
+        if (std::abs(cosine) < clear_cosine) continue;
+        if (cosine < 0) {
+          // Winding numbers have told which points are inside a solid; farther features face each other
+          // across it.
+          const bool outside = pair.kind == PairKind::vertex_triangle && pieces_.is_solid(b);
+          if (outside || distance > pair.thickness + pair.range) continue;
           s.normal = -s.normal;
           distance = -distance;
         }
+        facing = cosine > facing_cosine;
       }
       const double least = sided ? pair.thickness + calm_share * pair.range : pair.thickness;
       s.gap = pair.thickness + gap_share * pair.range;
       s.stiffness = surface_.stiffness(pair.points[0], pair.points[at(first_feature_size(pair.kind))], dt_);
-      if (sided ? distance < s.gap : distance <= least) add(s);
+      if (sided ? distance < s.gap || facing : distance <= least) add(s);
       if (distance > least) continue;
       if (!sided) vote(pair, geometry);
       ++tangle_.close_count;
@@ -319,16 +334,16 @@ class TangleFinder::Search {
     return false;
   }
 
-  /// Flattens folds of a piece that cross where triangles have a common corner, and all that cross if the
-  /// repair is stuck: their points move towards the middle of their neighbours.
-  void add_folds(bool stuck) {
+  /// Flattens folds of a piece that cross where triangles have a common corner, or all that cross: their
+  /// points move towards the middle of their neighbours.
+  void add_folds(bool all) {
     std::set<int> folded;  // points
     for (const auto& [first, second] : tangle_.crossing) {
       if (pieces_.of_triangle(first) != pieces_.of_triangle(second)) continue;
       const Vec3i &a = surface_.triangles()[at(first)], &b = surface_.triangles()[at(second)];
       bool joined = false;
       for (const int i : a) joined = joined || i == b[0] || i == b[1] || i == b[2];
-      if (!joined && !stuck) continue;
+      if (!joined && !all) continue;
       folded.insert(a.begin(), a.end());
       folded.insert(b.begin(), b.end());
     }
@@ -372,7 +387,7 @@ class TangleFinder::Search {
   Layerings& layerings_;
   std::set<std::pair<int, int>>& sided_;
   ContactRules::Set rules_;  // at the start
-  double dt_;
+  double dt_, firmness_;
   std::vector<Vec3> x_;
   struct Votes {
     double first = 0, second = 0;  // of a piece: > 0 before the other one
@@ -387,12 +402,14 @@ TangleFinder::TangleFinder(std::shared_ptr<const ContactModel> model)
       pieces_(*model_->surface, model_->rest),
       candidates_(model_->surface, model_->rest, model_->distance) {}
 
-Tangle TangleFinder::find(ConstVectors q, double dt, bool stuck) { return Search(*this, q, dt).find(stuck); }
+Tangle TangleFinder::find(ConstVectors q, double dt, const Persistence& persistence) {
+  return Search(*this, q, dt, persistence.firmness).find(persistence.flattens);
+}
 
 std::vector<WrongSide> find_wrong_sides(const std::shared_ptr<const ContactModel>& model, ConstVectors q) {
   TangleFinder finder(model);
   std::map<std::pair<int, int>, WrongSide> sides;
-  for (const LostPoint& lost : finder.find(q, 1, false).wrong) {
+  for (const LostPoint& lost : finder.find(q, 1).wrong) {
     const int body = model->surface->body_of(lost.point), other = finder.pieces().body(lost.piece);
     WrongSide& side = sides.try_emplace({body, other}, WrongSide{body, other}).first->second;
     ++side.points;

@@ -33,6 +33,12 @@ struct Tangle {
   std::size_t size() const { return crossing.size() + wrong.size() + close_count; }
 };
 
+/// What a repair does more when steps did not help.
+struct Persistence {
+  double firmness = 1;    ///< of separations, over the stiffness of contact
+  bool flattens = false;  ///< true if all folds of a surface through itself are flattened
+};
+
 /// Finds the tangles of one repair. Two pieces of which the right sides are known, a solid and what is around
 /// it or layers, are free of contact once they are tangled, and separations keep them apart by those sides
 /// until they have a gap in which contact is calm; other tangles leave contact on where nothing crosses.
@@ -43,9 +49,8 @@ struct Tangle {
 class TangleFinder {
  public:
   explicit TangleFinder(std::shared_ptr<const ContactModel> model);
-  /// q is #V by 3 [m]; `dt` the step in which separations act [s]. `stuck`: the steps before did not help, so
-  /// that folds of a surface through itself are flattened.
-  Tangle find(ConstVectors q, double dt, bool stuck);
+  /// q is #V by 3 [m]; `dt` the step in which separations act [s].
+  Tangle find(ConstVectors q, double dt, const Persistence& persistence = {});
 
   const SurfacePieces& pieces() const { return pieces_; }
 
