@@ -215,7 +215,8 @@ TEST(RunReport, HoldsMomentumAgainstTheImpulseOfGravity) {
 TEST(RunReport, JudgesWhatTheTablesSay) {
   Scratch scratch;
   const auto run = run_sheet(scratch);
-  // Frame 3: a step that missed its tolerance, a closed gap, two vertices held back, a depth of 1 mm.
+  // Frame 3: a step that missed its tolerance, a closed gap, two vertices held back by up to 4.2 mm, a depth
+  // of 1 mm.
   std::string table = bytes_of(run / "diagnostics.csv");
   std::size_t at = table.rfind('\n', table.size() - 2) + 1;
   std::vector<std::string> fields;
@@ -225,7 +226,8 @@ TEST(RunReport, JudgesWhatTheTablesSay) {
   fields[17] = "0";
   fields[19] = "1000";
   fields[21] = "2";
-  fields[22] = "0.001\n";
+  fields[22] = "0.001";
+  fields[23] = "0.0042\n";
   std::string spoiled;
   for (const std::string& field : fields) spoiled += (spoiled.empty() ? "" : ",") + field;
   test::write_bytes(run / "diagnostics.csv", table.substr(0, at) + spoiled);
@@ -236,6 +238,8 @@ TEST(RunReport, JudgesWhatTheTablesSay) {
     EXPECT_THAT(promise(report, key).frames, ElementsAre(3)) << key;
   }
   EXPECT_EQ(promise(report, "gaps_stay_open").measured, -0.002);
+  EXPECT_THAT(promise(report, "paths_are_followed").finding,
+              HasSubstr("up to 2 vertices, by up to 4.2 mm, in"));
 }
 
 TEST(RunReport, HoldsLimitsOfStretch) {

@@ -251,13 +251,14 @@ class TangleFinder::Search {
       double distance = geometry.distance;
       if (!(s.normal.norm() > 0)) s.normal = any_way_out(pair);
       bool facing = false;
-      if (sided) {
+      // Balls and capsules have no normals; they are left along the line.
+      if (const Vec3 right = sided ? right_side(pair) : Vec3(Vec3::Zero()); right.norm() > 0) {
         // The line from an edge of a triangle or beside a ridge leads along the surface and tells no side.
-        const double cosine = s.normal.dot(right_side(pair).normalized());
+        const double cosine = s.normal.dot(right.normalized());
         if (std::abs(cosine) < clear_cosine) continue;
         if (cosine < 0) {
-          // Winding numbers have told which points are inside a solid; farther features face each other
-          // across it.
+          // Winding numbers have told which points are inside; farther features face each other across a
+          // solid.
           const bool outside = pair.kind == PairKind::vertex_triangle && pieces_.is_solid(b);
           if (outside || distance > pair.thickness + pair.range) continue;
           s.normal = -s.normal;
