@@ -29,6 +29,7 @@ set(MUSLIN_PUBLIC_HEADERS
     contact/contact_surface.hpp
     contact/surface_map.hpp
     core/error.hpp
+    core/keyed_number.hpp
     core/keyframes.hpp
     core/output_file.hpp
     core/parallel.hpp

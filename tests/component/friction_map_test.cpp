@@ -180,7 +180,6 @@ TEST_F(FrictionMaps, AreListedAndRefusedByName) {
               HasSubstr("line 3: a number 'nan' is not a finite number"));
   EXPECT_THAT(with("{ map = 'slik', from = 0, to = 1 }"), HasSubstr("did you mean `slick`?"));
   EXPECT_THAT(with("{ map = 'slick', from = -0.1, to = 1 }"), HasSubstr("`from`"));
-  EXPECT_THAT(with("{ keyframes = [{ time = 0, value = 1 }] }"), HasSubstr("keyframes"));
 }
 
 TEST(FrictionOfPoints, IsInterpolatedAndExactWhereItIsEven) {
@@ -190,7 +189,7 @@ TEST(FrictionOfPoints, IsInterpolatedAndExactWhereItIsEven) {
   const std::array weights = {-0.2, -0.5, -0.3};
   const std::array one = {1.0};
   const auto friction = [&](const ContactSurface& of) {
-    return of.friction({{other.data(), 1}, one}, {triangle, weights}, 0.5);
+    return of.friction({{other.data(), 1}, one}, {triangle, weights}, 0.5, 0);
   };
   EXPECT_DOUBLE_EQ(friction(surface), std::sqrt(0.25 * (0.2 * 0.1 + 0.5 * 0.3 + 0.3 * 0.8)));
   const ContactSurface even({{0, 1, 2}}, {0, 0, 0, 1}, {{}, {.friction = 0.3}}, {}, {},

@@ -166,7 +166,7 @@ friction = 0
     while (surface.body_of(a) != body_a) ++a;
     while (surface.body_of(b) != body_b) ++b;
     const double one = 1;
-    return surface.friction({{&a, 1}, {&one, 1}}, {{&b, 1}, {&one, 1}}, model.contact->friction);
+    return surface.friction({{&a, 1}, {&one, 1}}, {{&b, 1}, {&one, 1}}, model.contact->friction.at(0), 0);
   };
   EXPECT_EQ(friction(0, 0), 0.8);
   EXPECT_DOUBLE_EQ(friction(0, 1), 0.2);

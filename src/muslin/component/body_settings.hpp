@@ -27,7 +27,7 @@ struct BodySettings {
   bool contact = true;             ///< touches other bodies, colliders and itself
   bool self_contact = true;        ///< touches itself
   std::optional<double> friction;  ///< Coulomb's μ; default: that of the scene
-  schema::Variations variations;   ///< of `friction`, by a map
+  schema::Variations variations;   ///< of `friction`
   std::optional<int> layer;        ///< order outward: a body belongs outside those of lower layers
   std::optional<Vec3> colour;      ///< in pictures, sRGB 0…1; default: one of a palette
   Place place;

@@ -29,7 +29,8 @@ std::vector<schema::Key> placed_keys() {
       schema::truth("contact", &BodySettings::contact).means("`false` excludes the body from contact"),
       schema::truth("self_contact", &BodySettings::self_contact)
           .means("`false` excludes contact of the body with itself"),
-      friction_key(&BodySettings::friction).varies(&BodySettings::variations, {.map = true}),
+      friction_key(&BodySettings::friction)
+          .varies(&BodySettings::variations, {.map = true, .keyframes = true}),
       layer_key(&BodySettings::layer),
       schema::colour("colour", &BodySettings::colour)
           .may_change_on_resume()

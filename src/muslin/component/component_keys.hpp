@@ -35,6 +35,10 @@ schema::Declaration name_key(std::string otherwise) {
 schema::Declaration scale_key(Vec3 BodySettings::* member);
 schema::Declaration scale_key(Vec3 ColliderSettings::* member);
 
+/// Why thickness and distance of contact have no keyframes.
+constexpr const char* steady_thickness = "surfaces that thicken would cross those that they touch";
+constexpr const char* steady_distance = "a longer one would throw apart what rests within it";
+
 template <class S>
 schema::Declaration friction_key(std::optional<double> S::* member) {
   return schema::number("friction", member)

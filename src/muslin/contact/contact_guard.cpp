@@ -95,7 +95,8 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
       edge_(mean_edge(*model_)),
       longest_(std::max(edges_at_once * edge_, 4 * candidates_.longest_range())),
       longest_push_(pushed_at_once * longest_),
-      friction_{model_->friction, stick_share * model_->surface->ranges(model_->distance)[0], stopping_time},
+      friction_{model_->friction.at(0), stick_share * model_->surface->ranges(model_->distance)[0],
+                stopping_time},
       x_(model_->map->point_count()),
       to_(model_->map->point_count()) {
   for (const ContactBody& body : model_->surface->bodies()) {
@@ -109,9 +110,11 @@ ContactGuard::ContactGuard(std::shared_ptr<const ContactModel> model, ContactMem
   rebuild();
 }
 
-void ContactGuard::follow_rules(ConstVectors q, double time) {
+void ContactGuard::follow_time(ConstVectors q, double begin, double end) {
+  friction_.coefficient = model_->friction.at(end);
+  friction_.time = end;
   const ContactRules& rules = model_->surface->rules();
-  const ContactRules::Set now = rules.in_force(time);
+  const ContactRules::Set now = rules.in_force(begin + (end - begin) / 2);
   if (now == memory_.rules && rules.hash() == memory_.rules_hash) return;
   memory_.rules = now;
   memory_.rules_hash = rules.hash();

@@ -46,9 +46,9 @@ class ContactGuard : public StepGuard {
   void for_each_contact(const std::function<void(const Contact&)>& visit) const override;
   void end(ConstVectors q) override;
 
-  /// Sets the rules in force at `time` [s] for the next step, from q. Triangles that cross when a rule's
-  /// contact begins are free until they part.
-  void follow_rules(ConstVectors q, double time);
+  /// Prepares for a step from q between two times [s]: with the rules in force in its middle and the friction
+  /// of its end. Triangles that cross when a rule's contact begins are free until they part.
+  void follow_time(ConstVectors q, double begin, double end);
 
   /// Excludes contact between the features of triangles that cross at q, as below, after vertices were moved
   /// without a limit.

@@ -9,6 +9,7 @@
 #include "muslin/contact/contact_surface.hpp"
 #include "muslin/contact/step_limiter.hpp"
 #include "muslin/contact/surface_map.hpp"
+#include "muslin/core/keyed_number.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
@@ -18,7 +19,7 @@ struct ContactModel {
   std::shared_ptr<const SurfaceMap> map;  ///< the surface's points from all vertices of the model
   std::vector<Vec3> rest;                 ///< #P by 3, points of the surface at rest [m]
   double distance = 2e-3;  ///< d̂ of bodies without their own, the gap below which contact acts [m]
-  double friction = 0;                    ///< default of Coulomb's μ
+  KeyedNumber friction = 0;               ///< default of Coulomb's μ
   StepLimits limits;                      ///< gap floor; prescribed vertices, rigid groups
   ContactExemptions exempt;
   // For messages; may be empty.

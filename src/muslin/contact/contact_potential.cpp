@@ -31,17 +31,17 @@ Vec3 combined(const MergedContact& contact, const std::array<double, 4>& weights
 
 Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - normal.dot(v) * normal; }
 
-double friction_of(const ContactSurface& surface, const MergedContact& contact, double common) {
-  const std::optional<double> ruled =
-      contact.rule < 0 ? std::nullopt : surface.rules()[contact.rule].friction;
-  if (ruled) return *ruled;
+double coefficient_of(const ContactSurface& surface, const MergedContact& contact, const Friction& friction) {
+  if (contact.rule >= 0)
+    if (const std::optional<KeyedNumber>& ruled = surface.rules()[contact.rule].friction)
+      return ruled->at(friction.time);
   const auto side = [&](int begin, int end) {
     const auto first = static_cast<std::size_t>(begin), size = static_cast<std::size_t>(end - begin);
     return ContactSurface::Side{std::span(contact.points).subspan(first, size),
                                 std::span(contact.weights).subspan(first, size)};
   };
   return surface.friction(side(0, contact.first_size), side(contact.first_size, point_count(contact)),
-                          common);
+                          friction.coefficient, friction.time);
 }
 
 constexpr std::uint64_t second_mask = (std::uint64_t{1} << 31) - 1;
@@ -108,7 +108,7 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
         for (std::size_t i = begin; i < end; ++i) {
           const MergedContact& contact = contacts_[i];
           if (!(contact.slope < 0) || contact.key == 0) continue;
-          const double coefficient = friction_of(*surface_, contact, friction.coefficient);
+          const double coefficient = coefficient_of(*surface_, contact, friction);
           if (!(coefficient > 0)) continue;
           Made& one = out.emplace_back();
           FrictionTerm& sliding = one.sliding;

@@ -31,9 +31,10 @@
 namespace muslin {
 
 struct Friction {
-  double coefficient = 0;      ///< default of Coulomb's μ
+  double coefficient = 0;      ///< Coulomb's μ at `time` of bodies without their own
   double stick_length = 1e-5;  ///< slip at which friction is full [m]
   double dt = stopping_time;   ///< time in which contact stops rigid bodies [s]
+  double time = 0;             ///< at which μ is taken: the end of the step [s]
 };
 
 /// Slip of a sticking or sliding pair, by ContactPair::key(); part of the state of a run.

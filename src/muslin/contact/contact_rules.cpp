@@ -11,7 +11,7 @@ namespace muslin {
 namespace {
 
 void require_numbers(const ContactRule& rule) {
-  if (rule.thickness.value_or(0) < 0 || rule.friction.value_or(0) < 0)
+  if (rule.thickness.value_or(0) < 0 || rule.friction.value_or(0).least() < 0)
     throw Error(ErrorKind::usage, "a thickness or friction of a contact rule is negative", "give 0 or more");
   if (!(rule.range.value_or(1) > 0) || !(rule.stiffness.value_or(1) > 0))
     throw Error(ErrorKind::usage, "a distance or stiffness of a contact rule is not positive",
@@ -23,7 +23,7 @@ std::uint64_t hash_of(const ContactRule& rule, std::uint64_t seed) {
   const std::array numbers = {rule.touches ? 1.0 : 0.0,
                               rule.thickness.value_or(none),
                               rule.range.value_or(none),
-                              rule.friction.value_or(none),
+                              rule.friction.value_or(none).keys.front().value,
                               rule.stiffness.value_or(none),
                               rule.from,
                               rule.until};

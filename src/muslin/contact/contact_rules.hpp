@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "muslin/core/keyed_number.hpp"
+
 namespace muslin {
 
 /// How the features of one set of points meet those of another. A feature belongs to a set if any of its
@@ -19,7 +21,7 @@ struct ContactRule {
   /// Distance of the midsurfaces when they touch [m]; balls and capsules add their radius.
   std::optional<double> thickness;
   std::optional<double> range;                                       ///< d̂ [m]
-  std::optional<double> friction;                                    ///< Coulomb's μ
+  std::optional<KeyedNumber> friction;                               ///< Coulomb's μ
   std::optional<double> stiffness;                                   ///< [N/m]
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
 };

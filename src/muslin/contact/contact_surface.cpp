@@ -53,7 +53,7 @@ ContactSurface::ContactSurface(std::vector<Vec3i> triangles, std::vector<int> bo
     if (!(body.range.value_or(1) > 0))
       throw Error(ErrorKind::usage, "a contact distance is not positive", "give a length in metres");
     if (!(body.radius >= 0)) throw Error(ErrorKind::usage, "a contact radius is negative", "give 0 or more");
-    if (body.friction && !(*body.friction >= 0))
+    if (body.friction && !(body.friction->least() >= 0))
       throw Error(ErrorKind::usage, "a friction coefficient is negative", "give 0 or more");
     if (!(body.stiffness > 0) && !(body.mass > 0))
       throw Error(ErrorKind::usage, "a contact stiffness is not positive", "give newtons per metre");

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "muslin/contact/contact_rules.hpp"
+#include "muslin/core/keyed_number.hpp"
 #include "muslin/core/vectors.hpp"
 
 namespace muslin {
@@ -31,7 +32,7 @@ struct ContactBody {
   /// none.
   std::array<int, 4> frame = {-1, -1, -1, -1};
   /// Coulomb's μ of this body; none: the scene's default. A pair uses the geometric mean.
-  std::optional<double> friction = std::nullopt;
+  std::optional<KeyedNumber> friction = std::nullopt;
   /// Above 0: the stiffness is 4 m/dt², which stops this mass within a step; `stiffness` is ignored [kg].
   double mass = 0;
   /// Its contact distance d̂ [m]; none: that of the model. A pair uses the smaller one, unless one of them is
@@ -54,8 +55,8 @@ struct ContactPlane {
 
 /// Numbers that vary over the points of a surface, #P each; empty, or negative at a point: that of the body.
 struct ContactPointNumbers {
-  std::vector<double> friction;  ///< Coulomb's μ
-  std::vector<double> radius;    ///< half the thickness [m], at most the radius of the body
+  std::vector<KeyedNumber> friction;  ///< Coulomb's μ
+  std::vector<double> radius;         ///< half the thickness [m], at most the radius of the body
 };
 
 /// Immutable.
@@ -134,9 +135,10 @@ class ContactSurface {
     std::span<const double> weights;  ///< of one sign
   };
   /// Returns Coulomb's μ between two sides: √(μ_a μ_b), so that two bodies of equal μ have that μ between
-  /// them, and a frictionless body slides on everything. `common` is the μ of bodies without one.
-  double friction(const Side& side_a, const Side& side_b, double common) const {
-    const double a = friction_of(side_a, common), b = friction_of(side_b, common);
+  /// them, and a frictionless body slides on everything. `common` is the μ of bodies without one at `time`
+  /// [s].
+  double friction(const Side& side_a, const Side& side_b, double common, double time) const {
+    const double a = friction_of(side_a, common, time), b = friction_of(side_b, common, time);
     return a == b ? a : std::sqrt(a * b);
   }
   /// True for points of a codimensional triangle: the centre of a sphere, an end of a capsule's axis.
@@ -148,18 +150,22 @@ class ContactSurface {
   std::span<const int> triangles_at_edge(int e) const { return at_edges_[static_cast<std::size_t>(e)]; }
 
  private:
-  double friction_of(int point, double common) const {
-    const double varied = varying_.friction[static_cast<std::size_t>(point)];
-    return varied >= 0 ? varied : body_at(point).friction.value_or(common);
+  double friction_of_body(int point, double common, double time) const {
+    const std::optional<KeyedNumber>& own = body_at(point).friction;
+    return own ? own->at(time) : common;
   }
-  double friction_of(const Side& side, double common) const {
+  double friction_of(int point, double common, double time) const {
+    const double varied = varying_.friction[static_cast<std::size_t>(point)].at(time);
+    return varied >= 0 ? varied : friction_of_body(point, common, time);
+  }
+  double friction_of(const Side& side, double common, double time) const {
     const int first = side.points.front();
-    if (varying_.friction.empty()) return body_at(first).friction.value_or(common);
+    if (varying_.friction.empty()) return friction_of_body(first, common, time);
     // The differences vanish where all points have one value, which is then returned bit for bit.
-    const double base = friction_of(first, common);
+    const double base = friction_of(first, common, time);
     double sum = 0, weights = 0;
     for (std::size_t i = 0; i < side.points.size(); ++i) {
-      sum += side.weights[i] * (friction_of(side.points[i], common) - base);
+      sum += side.weights[i] * (friction_of(side.points[i], common, time) - base);
       weights += side.weights[i];
     }
     return std::max(0.0, base + sum / weights);

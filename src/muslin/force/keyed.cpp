@@ -9,10 +9,6 @@ Vec3 Keyed::at(double time) const { return value_at(keys, time); }
 
 Vec3 Keyed::integral(double time) const { return integral_over(keys, 0, time); }
 
-double KeyedNumber::at(double time) const { return value_at(keys, time); }
-
-double KeyedNumber::integral(double time) const { return integral_over(keys, 0, time); }
-
 double Window::share(double begin, double end) const {
   const double length = end - begin;
   assert(length >= 0);

@@ -1,9 +1,10 @@
-// Keyed and KeyedNumber are quantities that keyframes change over time.
+// Keyed is a vector that keyframes change over time.
 #pragma once
 
 #include <vector>
 
 #include "muslin/api.hpp"
+#include "muslin/core/keyed_number.hpp"
 #include "muslin/core/keyframes.hpp"
 #include "muslin/core/vectors.hpp"
 
@@ -22,19 +23,6 @@ struct MUSLIN_API Keyed {
   Vec3 at(double time) const;
   /// ∫₀ᵗ at(s) ds for t ≥ 0, exactly: the displacement due to a keyed velocity.
   Vec3 integral(double time) const;
-};
-
-/// A number, constant or keyframed in the same way.
-struct MUSLIN_API KeyedNumber {
-  KeyedNumber() = default;
-  KeyedNumber(double constant) : keys{{0, constant}} {}  // NOLINT(google-explicit-constructor): is one
-  using Key = NumberKeyframe;
-  std::vector<Key> keys;  ///< at least one, times ascend strictly
-
-  bool is_constant() const { return keys.size() == 1; }
-  double at(double time) const;
-  double integral(double time) const;  ///< ∫₀ᵗ at(s) ds for t ≥ 0, exactly
-  bool operator==(const KeyedNumber&) const = default;
 };
 
 /// The time during which a force acts, and its share of a step.

@@ -16,6 +16,7 @@
 #include "muslin/contact/crossings.hpp"
 #include "muslin/scene/build_contact_rules.hpp"
 #include "muslin/scene/joint_exemptions.hpp"
+#include "muslin/schema/over_time.hpp"
 
 namespace muslin {
 namespace {
@@ -102,7 +103,8 @@ class ContactBuilder {
   }
 
   /// Appends the numbers of the next `count` points, or −1 where they have none, to those of all points.
-  void append(const std::vector<double>& numbers, std::size_t count, std::vector<double>& to) const {
+  template <class Number>
+  void append(const std::vector<Number>& numbers, std::size_t count, std::vector<Number>& to) const {
     if (numbers.empty() && to.empty()) return;
     to.resize(rest_.size(), -1.0);
     to.insert(to.end(), numbers.begin(), numbers.end());
@@ -113,7 +115,7 @@ class ContactBuilder {
     const auto model = std::make_shared<ContactModel>();
     model->distance =
         scene_.contact.distance.value_or(std::min(size_share * largest_, edge_share * shortest_edge_));
-    model->friction = scene_.contact.friction;
+    model->friction = *schema::over_time(scene_.contact.variations, "friction", scene_.contact.friction);
     model->limits.prescribed = std::move(prescribed_);
     model->limits.groups = std::move(groups_);
     model->rest = std::move(rest_);

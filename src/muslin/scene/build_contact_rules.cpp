@@ -9,6 +9,7 @@
 
 #include "muslin/core/error.hpp"
 #include "muslin/core/nearest_name.hpp"
+#include "muslin/schema/over_time.hpp"
 
 namespace muslin {
 namespace {
@@ -30,7 +31,7 @@ class RuleBuilder {
     rule.touches = pair.contact;
     rule.thickness = pair.thickness;
     rule.range = pair.distance;
-    rule.friction = pair.friction;
+    rule.friction = schema::over_time(pair.variations, "friction", pair.friction);
     rule.stiffness = pair.stiffness;
     rule.from = pair.from;
     rule.until = pair.until;

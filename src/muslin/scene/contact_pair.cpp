@@ -70,15 +70,18 @@ schema::Table declare_contact_pair() {
        schema::number("thickness", &Pair::thickness)
            .unit("m")
            .range({0, 1e6, false})
+           .steady(steady_thickness)
            .otherwise("half the thickness of each")
            .means("distance of their midsurfaces when they touch; balls and capsules add their radius"),
        schema::number("distance", &Pair::distance)
            .unit("m")
            .range({1e-9, 1e6, false})
+           .steady(steady_distance)
            .otherwise("as without the pair")
            .means("contact distance: they repel each other where the gap is below it"),
        schema::number("friction", &Pair::friction)
            .range({0, 100, false})
+           .varies(&Pair::variations, {.keyframes = true})
            .otherwise("that of the two")
            .means("Coulomb's coefficient between them"),
        schema::number("stiffness", &Pair::stiffness)

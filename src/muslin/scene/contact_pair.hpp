@@ -9,6 +9,7 @@
 
 #include "muslin/api.hpp"
 #include "muslin/core/error.hpp"
+#include "muslin/schema/variation.hpp"
 
 namespace muslin {
 
@@ -28,6 +29,7 @@ struct MUSLIN_API ContactPairSettings {
   std::optional<double> thickness;  ///< distance of the midsurfaces that touch [m]
   std::optional<double> distance;   ///< d̂ [m]
   std::optional<double> friction;   ///< Coulomb's μ
+  schema::Variations variations;    ///< of `friction`, by keyframes
   std::optional<double> stiffness;  ///< [N/m]
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Place place;

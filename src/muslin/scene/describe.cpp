@@ -85,7 +85,7 @@ Json contact_json(const Model& model) {
   const ContactModel& contact = *model.contact;
   const ContactSurface& surface = *contact.surface;
   Json json = {{"distance", surface.ranges(contact.distance)[1]},
-               {"friction", contact.friction},
+               {"friction", contact.friction.keys.front().value},
                {"triangles", surface.triangles().size()}};
   for (std::size_t b = 0; b < surface.bodies().size(); ++b)
     if (const ContactBody& body = surface.bodies()[b]; !body.fixed)
@@ -99,7 +99,8 @@ std::string contact_text(const ContactModel& contact) {
   const auto [least, most] = contact.surface->ranges(contact.distance);
   std::string text = least < most ? fmt::format("contact: within {:.3g} to {:.3g} m", least, most)
                                   : fmt::format("contact: within {:.3g} m", most);
-  text += fmt::format(", friction {:.3g}", contact.friction);
+  text += fmt::format(", friction {:.3g}{}", contact.friction.keys.front().value,
+                      contact.friction.is_constant() ? "" : " at first");
   const std::size_t rules = contact.surface->rules().all().size();
   return text + (rules > 0 ? fmt::format(", {} for pairs\n", counted(rules, "rule")) : "\n");
 }

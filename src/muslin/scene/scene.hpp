@@ -50,6 +50,7 @@ struct ContactSettings {
   bool given = false;              ///< true if the scene has [contact]
   std::optional<double> distance;  ///< d̂ [m]; default: see build_contact.hpp
   double friction = 0.3;           ///< Coulomb's μ of bodies without their own
+  schema::Variations variations;   ///< of `friction`, by keyframes
   TangledStart tangled = TangledStart::repair;
   std::vector<ContactPairSettings> pairs;  ///< of several that match, the last one in force holds
   Place place;

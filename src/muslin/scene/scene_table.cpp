@@ -189,6 +189,7 @@ const schema::Table& contact_table() {
       {schema::number("distance", &ContactSettings::distance)
            .unit("m")
            .range({1e-9, 1e6, false})
+           .steady(steady_distance)
            .otherwise("see below")
            .shown_as<ContactSettings>([](const ContactSettings& contact) {  // null where the bodies decide
              return contact.distance ? schema::real(*contact.distance) : schema::null();
@@ -196,6 +197,7 @@ const schema::Table& contact_table() {
            .means("contact distance: surfaces repel each other where the gap is below it"),
        schema::number("friction", &ContactSettings::friction)
            .range({0, 100, false})
+           .varies(&ContactSettings::variations, {.keyframes = true})
            .means("Coulomb's coefficient of each body and collider without its own `friction`"),
        schema::word("tangled", &ContactSettings::tangled, {"refuse", "repair", "ignore"})
            .means(

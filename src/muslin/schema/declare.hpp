@@ -59,6 +59,8 @@ class Declaration {
     key_.conflicts.push_back({std::move(other), std::move(problem), std::move(remedy)});
     return *this;
   }
+  /// States why a number cannot have keyframes.
+  Declaration& steady(std::string reason) { return set(&Key::steady, std::move(reason)); }
   /// Lets a number vary in these forms; `list` holds the variation, the key's member then the nominal value.
   template <class S>
   Declaration& varies(Variations S::* list, VaryingForms forms) {

@@ -53,6 +53,7 @@ struct Key {
   bool may_change_on_resume = false;
   const Table& (*table)() = nullptr;  ///< the keys of a table, or of each table of a list
   VaryingForms forms;                 ///< of a number: in which it may vary
+  std::string steady;                 ///< why a number has no keyframes, for messages; empty: nothing to say
 
   struct Need {
     std::string other, remedy;

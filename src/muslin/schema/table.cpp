@@ -19,7 +19,6 @@ void add_name(std::vector<std::string>& names, const std::string& name) {
   if (!contains(names, name)) names.push_back(name);
 }
 
-/// Checks which keys are given beside which.
 /// ", or `a` or `b`": the keys that excuse the absence of `key`, of those that the table may have.
 std::string or_others(const Key& key, const std::vector<const Key*>& keys) {
   std::string words;
@@ -29,6 +28,14 @@ std::string or_others(const Key& key, const std::vector<const Key*>& keys) {
   return words;
 }
 
+void refuse_keyframes(const Key& key, const TomlTable& table) {
+  const TomlValue* value = table.find(key.name);
+  if (key.steady.empty() || value == nullptr || value->find("keyframes") == nullptr) return;
+  throw table.error(key.name, fmt::format("`{}` cannot vary by keyframes: {}", key.name, key.steady),
+                    fmt::format("give {}", described(key)));
+}
+
+/// Checks which keys are given beside which.
 void check_presence(const Key& key, const std::vector<const Key*>& keys, const TomlTable& table) {
   if (!table.has(key.name)) {
     const bool excused = std::any_of(key.unless.begin(), key.unless.end(),
@@ -164,6 +171,7 @@ void Table::read_erased(const TomlTable& table, void* settings) const {
   const std::vector<const Key*> active = keys_of(variant);
   for (const Key* key : active) {
     check_presence(*key, active, table);
+    refuse_keyframes(*key, table);
     if (table.has(key->name)) key->read(*key, table, settings);
   }
   if (complete) complete(table, settings);

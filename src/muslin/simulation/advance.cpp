@@ -45,7 +45,7 @@ class Advance {
     const auto loads = terms_.potentials_of_loads(context);
     Holds next = hold(context, before);
     predict(settings.integrator, before, context);
-    if (guard_) guard_->follow_rules(before.positions, context.time_begin + length / 2);
+    if (guard_) guard_->follow_time(before.positions, context.time_begin, context.time_end);
 
     const std::vector<double> accelerations =
         driving_accelerations(model_, terms_, loads, before.positions, scratch_);

@@ -102,7 +102,7 @@ void Simulation::Impl::touch(bool leave_free) {
   state.contact = {};
   ContactGuard& guard = *scratch.guard(*model, state);
   const std::vector<Vec3>& x = state.motion.positions;
-  guard.follow_rules(x, state.motion.time);
+  guard.follow_time(x, state.motion.time, state.motion.time);
   if (leave_free) guard.allow_initial_intersections(x);
   guard.begin(x, scratch.fixed);
   guard.potential(x, StepGuard::Friction::anew);

@@ -112,7 +112,7 @@ class Repair {
       prescribed.hold(now, scratch_.fixed, scratch_.targets);
 
     ContactGuard* guard = scratch_.guard(model_, state_);
-    guard->follow_rules(motion.positions, now);
+    guard->follow_time(motion.positions, now, now);
     guard->leave_free(tangle.crossing, tangle.free);
     // Steps are solved to a share of the separations, whatever the stiffness.
     const std::vector<double> accelerations(

@@ -3,6 +3,8 @@
 #include <array>
 #include <limits>
 
+#include "muslin/schema/over_time.hpp"
+
 namespace muslin {
 namespace {
 
@@ -23,7 +25,7 @@ std::optional<ContactPart> AffineCollider::contact_part() const {
   part.body.fixed = is_prescribed();
   part.body.self_contact = false;
   part.body.solid = true;
-  part.body.friction = settings.friction;
+  part.body.friction = schema::over_time(settings.variations, "friction", settings.friction);
   part.body.layer = settings.layer;
   part.body.stiffness = std::numeric_limits<double>::infinity();
   if (!is_prescribed()) {

@@ -8,6 +8,7 @@
 #include "muslin/constraint/pin.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
+#include "muslin/schema/variation.hpp"
 
 namespace muslin {
 
@@ -36,6 +37,7 @@ struct ColliderSettings {
   Vec3 angular_velocity = Vec3::Zero();  ///< initial, with a density, about its centre of mass [degrees/s]
   bool contact = true;
   std::optional<double> friction;  ///< Coulomb's μ; default: that of the scene
+  schema::Variations variations;   ///< of `friction`, by keyframes
   std::optional<int> layer;        ///< order outward: a body belongs outside those of lower layers
   std::optional<Vec3> colour;      ///< in pictures, sRGB 0…1; default: grey
   Place place;

@@ -153,7 +153,8 @@ schema::Table declare_collider() {
                .means("motion relative to its initial position: a list of tables; times ascend")),
        schema::truth("contact", &Collider::contact)
            .means("`false` excludes it from contact; it is only drawn"),
-       friction_key(&Collider::friction), layer_key(&Collider::layer),
+       friction_key(&Collider::friction).varies(&Collider::variations, {.keyframes = true}),
+       layer_key(&Collider::layer),
        schema::colour("colour", &Collider::colour)
            .may_change_on_resume()
            .otherwise("grey")

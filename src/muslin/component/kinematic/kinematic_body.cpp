@@ -8,6 +8,7 @@
 
 #include "muslin/component/collider/collider_kind.hpp"
 #include "muslin/io/point_sequence_file.hpp"
+#include "muslin/schema/over_time.hpp"
 
 namespace muslin {
 namespace {
@@ -114,7 +115,7 @@ std::optional<ContactPart> KinematicMesh::contact_part() const {
   part.body.fixed = true;
   part.body.self_contact = false;
   part.body.solid = true;
-  part.body.friction = settings.friction;
+  part.body.friction = schema::over_time(settings.variations, "friction", settings.friction);
   part.body.layer = settings.layer;
   part.body.stiffness = std::numeric_limits<double>::infinity();
   part.add_mesh(mesh, triangulate(mesh), skin);

@@ -13,6 +13,7 @@
 #include "muslin/core/parallel.hpp"
 #include "muslin/geometry/edge_length.hpp"
 #include "muslin/lattice/lattice_moduli.hpp"
+#include "muslin/schema/over_time.hpp"
 
 namespace muslin {
 namespace {
@@ -134,8 +135,11 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
   part.edge = mean_edge(mesh.positions, cut.triangles);
   part.size = mesh.bounds().sizes().maxCoeff();
   part.body.self_contact = settings.self_contact;
-  part.body.friction = settings.friction;
-  if (const MappedNumber* map = find_map(maps, "friction")) part.varying.friction = map->numbers();
+  part.body.friction = schema::over_time(settings.variations, "friction", settings.friction);
+  if (const MappedNumber* map = find_map(maps, "friction")) {
+    const std::vector<double> numbers = map->numbers();
+    part.varying.friction.assign(numbers.begin(), numbers.end());
+  }
   part.body.layer = settings.layer;
   part.body.radius = sheet ? thickness / 2 : 0;
   part.body.solid = !sheet;

@@ -23,6 +23,7 @@
 #include "muslin/material/keyed_material.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/material/varied_material.hpp"
+#include "muslin/schema/over_time.hpp"
 #include "muslin/shell/rest_scale.hpp"
 
 namespace muslin {
@@ -199,14 +200,19 @@ double ShellBody::mean_modulus() const {
   return sum / std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
-std::vector<double> ShellBody::frictions() const {
+std::vector<KeyedNumber> ShellBody::frictions() const {
   const MappedNumber* map = find_map(maps, "friction");
   const bool varies = map != nullptr || std::any_of(fabrics.begin(), fabrics.end(), [](const FabricInUse& f) {
                         return f.friction.has_value();
                       });
   if (!varies) return {};
-  std::vector<double> frictions =
+  const std::vector<double> numbers =
       map != nullptr ? map->numbers() : std::vector<double>(mesh.vertex_count(), -1.0);
+  std::vector<KeyedNumber> frictions(numbers.begin(), numbers.end());
+  std::vector<std::optional<KeyedNumber>> of_fabrics;
+  of_fabrics.reserve(fabrics.size());
+  for (const FabricInUse& fabric : fabrics)
+    of_fabrics.push_back(schema::over_time(fabric.variations, "friction", fabric.friction));
   std::vector<int> last(mesh.vertex_count(), -1);
   for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
     const int fabric = triangle_fabrics[t];
@@ -216,7 +222,7 @@ std::vector<double> ShellBody::frictions() const {
     for (const int v : shell.triangles[t]) {
       if (fabric < last[at(v)]) continue;
       last[at(v)] = fabric;
-      frictions[at(v)] = own_map != nullptr ? own_map->at(at(v)) : *of.friction;
+      frictions[at(v)] = own_map != nullptr ? own_map->at(at(v)) : *of_fabrics[at(fabric)];
     }
   }
   return frictions;
@@ -229,7 +235,7 @@ std::optional<ContactPart> ShellBody::contact_part() const {
   part.edge = mean_edge(mesh.positions, cut.triangles);
   part.size = mesh.bounds().sizes().maxCoeff();
   part.body.self_contact = settings.self_contact;
-  part.body.friction = settings.friction;
+  part.body.friction = schema::over_time(settings.variations, "friction", settings.friction);
   part.varying.friction = frictions();
   part.body.layer = settings.layer;
   part.body.radius = own().thickness.value_or(std::min(thin, thin_share * part.edge)) / 2;

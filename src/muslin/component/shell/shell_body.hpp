@@ -18,6 +18,7 @@
 #include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/component/shell/shell_fabric.hpp"
 #include "muslin/component/shell/trusted_edge.hpp"
+#include "muslin/core/keyed_number.hpp"
 #include "muslin/potential/symmetric_pattern.hpp"
 #include "muslin/shell/shell.hpp"
 
@@ -82,7 +83,7 @@ class ShellBody final : public Component {
   const ShellBodySettings& own() const { return settings.own.as<ShellBodySettings>(); }
 
   /// Returns Coulomb's μ of each vertex, negative where it is that of the body; empty: everywhere.
-  std::vector<double> frictions() const;
+  std::vector<KeyedNumber> frictions() const;
 
  private:
   std::string description_of(std::size_t fabric) const;

@@ -18,7 +18,7 @@ struct ShellFabric {
   std::string faces;  ///< a face group of the mesh, or a material of its file
   Material material;  ///< has numbers of shells
   std::optional<double> friction;  ///< Coulomb's μ; default: that of the body
-  schema::Variations variations;   ///< of `friction`, by a map
+  schema::Variations variations;   ///< of `friction`
   Place place;
 };
 

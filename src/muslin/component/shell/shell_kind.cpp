@@ -95,6 +95,7 @@ schema::Table declare_shell() {
       {schema::number("thickness", &Own::thickness)
            .unit("m")
            .range({0, largest_coordinate, false})
+           .steady(steady_thickness)
            .varies(&Own::variations, {.map = true})
            .otherwise("see below")
            .means("thickness in contact"),
@@ -222,7 +223,7 @@ const schema::Table& fabric_table() {
                   "of OBJ, materials of glTF)"),
        material_key(material_use, &ShellFabric::material),
        friction_key(&ShellFabric::friction)
-           .varies(&ShellFabric::variations, {.map = true})
+           .varies(&ShellFabric::variations, {.map = true, .keyframes = true})
            .otherwise("that of the body")
            .means("Coulomb's coefficient of its faces; vertices of several fabrics have that of the last one "
                   "with its own")});
