@@ -1,7 +1,9 @@
 // Numbers of materials vary by maps over shells and lattices.
 #include "muslin/component/body_maps.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -179,6 +181,40 @@ TEST_F(Maps, OfStiffnessMayChangeOnAResumeWhichTheAccountShows) {
   const Diagnostics start = before.diagnostics(), end = after.diagnostics();
   EXPECT_GT(end.material_work, 0.01 * start.elastic);
   EXPECT_NEAR(end.balance() - end.unbalanced, start.balance() - start.unbalanced, 1e-12);
+}
+
+/// Returns a square as glTF with the numbers of its vertices as attribute `_PAINT`, and its buffer
+/// `square.bin`.
+std::string painted_gltf(const std::array<float, 4>& paint, std::string& buffer) {
+  const auto put = [&](const auto& numbers) {
+    buffer.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof numbers[0]);
+  };
+  put(std::array<float, 12>{0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1});
+  put(paint);
+  put(std::array<std::uint32_t, 6>{0, 2, 1, 0, 3, 2});
+  return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"_PAINT":1},"indices":2}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+{"bufferView":1,"componentType":5126,"count":4,"type":"SCALAR"},
+{"bufferView":2,"componentType":5125,"count":6,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":16},
+{"buffer":0,"byteOffset":64,"byteLength":24}],
+"buffers":[{"uri":"square.bin","byteLength":88}]})";
+}
+
+TEST_F(Maps, AreAttributesOfGltfFiles) {
+  const std::string damping = std::string(shell) + "mass_damping = { map = '_PAINT', from = 1, to = 2 } }";
+  const auto use = [&](const std::array<float, 4>& paint) {
+    std::string buffer;
+    write("square.gltf", painted_gltf(paint, buffer));
+    write("square.bin", buffer);
+  };
+  use({0, 0.25F, 1, 0.5F});
+  const std::shared_ptr<const Model> model = model_of(damping, "", "square.gltf");
+  EXPECT_THAT(as_shell(model->bodies[0])->fabrics[0].maps[0].weights, testing::ElementsAre(0, 0.25, 1, 0.5));
+  use({0, 0.25F, NAN, 0.5F});
+  EXPECT_THAT(complaint_of(damping, "square.gltf"),
+              HasSubstr("the map `_PAINT` of `mass_damping` has no number at vertex 2, counted from 0"));
 }
 
 TEST_F(Maps, ThatAreWrongAreErrorsAtTheirPlace) {

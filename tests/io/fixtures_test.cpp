@@ -45,7 +45,7 @@ std::string gltf_buffer() {
 std::string gltf_text(const std::string& uri) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"name":"first","mesh":0,"children":[1]},{"name":"second node","mesh":0,"translation":[0,0,5],"scale":[-1,1,1]}],
-"meshes":[{"name":"square","primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2}]}],
+"meshes":[{"name":"square","primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1,"COLOR_0":0,"_PAINT":2,"_WIND":1},"indices":2}]}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":6,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
 {"bufferView":1,"componentType":5126,"count":6,"type":"VEC2"},
 {"bufferView":2,"componentType":5123,"count":6,"type":"SCALAR"}],

@@ -300,6 +300,13 @@ TEST(Stl, BinaryMayBeginWithSolidAndMustBeWhole) {
       5);
 }
 
+/// Returns the glTF fixture with one text in place of another.
+std::string altered_gltf(const std::string& from, const std::string& to) {
+  std::string text = fixtures::gltf();
+  EXPECT_NE(text.find(from), text.npos) << from;
+  return text.replace(text.find(from), from.size(), to);
+}
+
 TEST(Gltf, ReadsNodesTransformsAndSeams) {
   for (const auto& [bytes, suffix] :
        {std::pair{fixtures::glb(), ".glb"}, std::pair{fixtures::gltf(), ".gltf"}}) {
@@ -322,12 +329,44 @@ TEST(Gltf, ReadsNodesTransformsAndSeams) {
   }
 }
 
+TEST(Gltf, ReadsAttributesAndColours) {
+  for (const auto& [bytes, suffix] :
+       {std::pair{fixtures::glb(), ".glb"}, std::pair{fixtures::gltf(), ".gltf"}}) {
+    const std::vector<VertexAttribute> attributes = read(bytes, suffix).attributes;
+    std::vector<std::string> names;
+    for (const VertexAttribute& attribute : attributes) names.push_back(attribute.name);
+    ASSERT_THAT(names, ElementsAre("red", "green", "blue", "_PAINT", "_WIND.x", "_WIND.y")) << suffix;
+    // Of each square the vertices at two corners are stored twice, the first as 0 and 3, the third as 2
+    // and 4.
+    EXPECT_THAT(attributes[0].values, ElementsAre(0, 1, 1, 0, 0, 1, 1, 0));
+    EXPECT_THAT(attributes[3].values, ElementsAre(1.5, 1, 3, 5, 1.5, 1, 3, 5));
+  }
+}
+
+TEST(Gltf, HasNoValueWhereAPartLacksTheAttribute) {
+  std::string text = altered_gltf(R"("second node","mesh":0)", R"("second node","mesh":1)");
+  text.replace(text.find(R"(}]}],)"), 5,
+               R"(}]},{"primitives":[{"attributes":{"POSITION":0},"indices":2}]}],)");
+  const std::vector<VertexAttribute> attributes = read(text, ".gltf").attributes;
+  ASSERT_EQ(attributes.size(), 6u);
+  for (const VertexAttribute& attribute : attributes) {
+    ASSERT_EQ(attribute.values.size(), 8u);
+    for (std::size_t v = 0; v < 8; ++v) EXPECT_EQ(std::isnan(attribute.values[v]), v >= 4) << v;
+  }
+}
+
+TEST(Gltf, LeavesOutAttributesWithoutDataOrOfMatrices) {
+  for (const char* accessor : {R"("componentType":5126,"count":6,"type":"SCALAR")",
+                               R"("bufferView":0,"componentType":5126,"count":1,"type":"MAT2")"}) {
+    std::string text = altered_gltf(R"("_PAINT":2)", R"("_PAINT":3)");
+    text.replace(text.find("],\n\"bufferViews"), 1, std::string(",{") + accessor + "}]");
+    const std::vector<VertexAttribute> attributes = read(text, ".gltf").attributes;
+    EXPECT_EQ(attributes.size(), 5u) << accessor;
+  }
+}
+
 TEST(Gltf, ChecksTheContentOfTheFile) {
-  const auto with = [](const std::string& from, const std::string& to) {
-    std::string text = fixtures::gltf();
-    EXPECT_NE(text.find(from), text.npos) << from;
-    return text.replace(text.find(from), from.size(), to);
-  };
+  const auto with = altered_gltf;
   refused(with("\"count\":6,\"type\":\"VEC3\"", "\"count\":600000000,\"type\":\"VEC3\""), ".gltf");
   refused(with("\"byteOffset\":72", "\"byteOffset\":1000"), ".gltf");
   refused(with("\"children\":[1]", "\"children\":[0]"), ".gltf");
@@ -335,6 +374,11 @@ TEST(Gltf, ChecksTheContentOfTheFile) {
   refused(with("\"POSITION\":0", "\"POSITION\":9"), ".gltf");
   refused(with("data:application/octet-stream;base64,", "elsewhere.bin?"), ".gltf");
   refused(with("\"translation\":[0,0,5]", "\"translation\":[0,0,1e300]"), ".gltf");
+  refused(with("\"_PAINT\":2", "\"_PAINT\":9"), ".gltf");
+  std::string text = with("\"_PAINT\":2", "\"_PAINT\":3");
+  text.replace(text.find("],\n\"bufferViews"), 1,
+               ",{\"bufferView\":2,\"componentType\":5123,\"count\":5,\"type\":\"SCALAR\"}]");
+  EXPECT_THAT(refused(text, ".gltf").what(), HasSubstr("the attribute _PAINT has 5 values for 6 positions"));
 }
 
 TEST(Collada, AppliesUnitAndAxis) {

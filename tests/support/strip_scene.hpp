@@ -39,9 +39,9 @@ class StripScene : public testing::Test {
     return std::make_shared<const Model>(build_model(scene));
   }
   /// Returns the message of the error that a strip with these keys causes.
-  std::string complaint_of(const std::string& keys) const {
+  std::string complaint_of(const std::string& keys, const std::string& mesh = "sheet") const {
     try {
-      model_of(keys);
+      model_of(keys, "", mesh);
     } catch (const Error& error) {
       return error.what();
     }

@@ -35,6 +35,8 @@ class MapReader {
     const auto [lowest, highest] = std::pair(variation_.lowest, variation_.highest);
     for (std::size_t v = 0; v < count; ++v) {
       double& weight = weights[v];
+      if (std::isnan(weight))
+        refuse(fmt::format("has no number at vertex {}, counted from 0", v), "give every vertex a number");
       if (!(weight >= lowest && weight <= highest))
         refuse(fmt::format("is {} at vertex {}, counted from 0, which is not between {} and {}", weight, v,
                            lowest, highest),

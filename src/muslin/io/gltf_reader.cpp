@@ -220,10 +220,37 @@ class GltfReader {
       out_.position({positions.at(v, 0), positions.at(v, 1), positions.at(v, 2)});
     for (std::size_t v = 0; v < uvs.count; ++v)
       out_.uv({uvs.at(v, 0), 1 - uvs.at(v, 1)});  // v counts down in glTF
+    for (const auto& [name, accessor] : part.attributes)
+      if (name == "COLOR_0" || name.starts_with('_')) attribute(name, accessor, positions.count);
     for (std::size_t c = 2; c < corners; c += triangles ? 3 : 1) {
       std::size_t a = fan ? 0 : c - 2, b = c - 1;
       if (strip && c % 2 == 1) std::swap(a, b);
       out_.face(std::array{index(a), index(b), index(c)});
+    }
+  }
+
+  // Vectors and colours become one attribute for each component. What is stored sparsely, or has no data or
+  // matrices, is left out: the mesh is usable without.
+  void attribute(const std::string& name, int accessor_index, std::size_t count) {
+    if (accessor_index < 0 || static_cast<std::size_t>(accessor_index) >= model_.accessors.size())
+      refuse("an accessor does not exist");
+    const tinygltf::Accessor& accessor = model_.accessors[static_cast<std::size_t>(accessor_index)];
+    const std::size_t components = accessor.type == TINYGLTF_TYPE_SCALAR ? 1
+                                   : accessor.type == TINYGLTF_TYPE_VEC2 ? 2
+                                   : accessor.type == TINYGLTF_TYPE_VEC3 ? 3
+                                   : accessor.type == TINYGLTF_TYPE_VEC4 ? 4
+                                                                         : 0;
+    if (components == 0 || accessor.sparse.isSparse || accessor.bufferView < 0) return;
+    const Numbers all = numbers(accessor_index, components);
+    if (all.count != count)
+      refuse("the attribute " + name + " has " + std::to_string(all.count) + " values for " +
+             std::to_string(count) + " positions");
+    constexpr std::array colours = {"red", "green", "blue", "alpha"};
+    constexpr std::array axes = {".x", ".y", ".z", ".w"};
+    std::vector<double> values(count);
+    for (std::size_t c = 0; c < components; ++c) {
+      for (std::size_t v = 0; v < count; ++v) values[v] = all.at(v, c);
+      out_.attribute(name == "COLOR_0" ? colours[c] : components == 1 ? name : name + axes[c], values);
     }
   }
 
@@ -264,7 +291,8 @@ class GltfReader {
     }
     const int wanted = components == 1   ? TINYGLTF_TYPE_SCALAR
                        : components == 2 ? TINYGLTF_TYPE_VEC2
-                                         : TINYGLTF_TYPE_VEC3;
+                       : components == 3 ? TINYGLTF_TYPE_VEC3
+                                         : TINYGLTF_TYPE_VEC4;
     if (accessor.type != wanted) refuse("an accessor has the wrong type for its use");
     result.components = components;
     result.normalized = accessor.normalized;

@@ -25,8 +25,10 @@ struct VertexAttribute {
 struct MeshFile {
   Mesh mesh;
   std::string note = {};  ///< changes made by the reader, empty if none
-  /// Numbers at the vertices: further properties of a PLY file, of which one-byte ones are divided by 255,
-  /// and `red`, `green`, `blue` of an OBJ file with colours.
+  /// Numbers at the vertices: further properties of a PLY file, of which one-byte ones are divided by 255;
+  /// `red`, `green`, `blue` of an OBJ file with colours; of a glTF file the same, and `alpha`, from COLOR_0,
+  /// and attributes that begin with `_`, components of vectors as `_NAME.x`. Where glTF stores a vertex
+  /// several times it has their mean, and NaN where a part of the mesh lacks the attribute.
   std::vector<VertexAttribute> attributes = {};
 };
 MUSLIN_API MeshFile read_mesh(const std::filesystem::path& path);

@@ -1,6 +1,8 @@
 #include "muslin/io/node_mesh.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "muslin/core/error.hpp"
 #include "muslin/geometry/inspect.hpp"
@@ -9,7 +11,8 @@
 namespace muslin {
 namespace {
 
-// Far beyond any mesh that can be simulated; stops small files that instance a mesh many times.
+// Far beyond any mesh that can be simulated; stops small files that instance a mesh many times. Also the most
+// numbers of all attributes.
 constexpr std::size_t max_corners = std::size_t{1} << 28;
 
 }  // namespace
@@ -49,6 +52,27 @@ void NodeMesh::uv(const Vec2& uv) {
   mesh_.uvs.push_back(uv);
 }
 
+void NodeMesh::attribute(const std::string& name, std::span<const double> values) {
+  const auto known = std::find_if(attributes_.begin(), attributes_.end(),
+                                  [&](const Attribute& other) { return other.mean.name == name; });
+  Attribute& own = known != attributes_.end() ? *known : attributes_.emplace_back();
+  own.mean.name = name;
+  complete(own);
+  for (std::size_t p = 0; p < part_vertices_.size(); ++p) {
+    const auto v = static_cast<std::size_t>(part_vertices_[p]);
+    double& mean = own.mean.values[v];
+    // The mean of equal numbers has their bits.
+    mean = own.counts[v] == 0 ? values[p] : mean + (values[p] - mean) / (own.counts[v] + 1);
+    ++own.counts[v];
+  }
+}
+
+void NodeMesh::complete(Attribute& attribute) const {
+  if (attributes_.size() * mesh_.positions.size() > max_corners) refuse("the mesh has too many attributes");
+  attribute.mean.values.resize(mesh_.positions.size(), std::numeric_limits<double>::quiet_NaN());
+  attribute.counts.resize(mesh_.positions.size(), 0);
+}
+
 void NodeMesh::face(std::span<const std::size_t> corners) {
   if (mesh_.face_vertices.size() + corners.size() > max_corners) refuse("the mesh is too large");
   if (mesh_.face_offsets.empty()) mesh_.face_offsets.push_back(0);
@@ -79,7 +103,14 @@ MeshFile NodeMesh::finish(const std::string& reason, const std::string& extra) {
   std::string note = reason + ": " + std::to_string(stored_) +
                      " stored vertices were welded by position into " +
                      std::to_string(mesh_.positions.size()) + "." + extra;
-  return {std::move(mesh_), std::move(note), {}};
+  MeshFile file{{}, std::move(note), {}};
+  file.attributes.reserve(attributes_.size());
+  for (Attribute& attribute : attributes_) {
+    complete(attribute);
+    file.attributes.push_back(std::move(attribute.mean));
+  }
+  file.mesh = std::move(mesh_);
+  return file;
 }
 
 void NodeMesh::refuse(const std::string& problem) const {

@@ -11,9 +11,9 @@
 namespace muslin {
 
 /// Call begin_node, then for each of its parts begin_part, position() for all positions, then the functions
-/// for all texture coordinates and all faces. Equal positions of one node become one vertex; texture
-/// coordinates stay with the corners. Errors: input, naming the file, at a position that cannot be used or a
-/// mesh that grows too large.
+/// for all texture coordinates, attributes and faces. Equal positions of one node become one vertex, which
+/// has the mean of their attributes; texture coordinates stay with the corners. Errors: input, naming the
+/// file, at a position that cannot be used or a mesh that grows too large.
 class NodeMesh {
  public:
   explicit NodeMesh(std::string file) : file_(std::move(file)), welder_(mesh_.positions) {}
@@ -25,6 +25,8 @@ class NodeMesh {
   void begin_part(std::size_t positions, std::size_t uvs, const std::string& material = "");
   void position(const Vec3& local);
   void uv(const Vec2& uv);
+  /// Takes the numbers of an attribute at all positions of this part. Vertices of parts without it have NaN.
+  void attribute(const std::string& name, std::span<const double> values);
   /// Indices into the positions of this part.
   void face(std::span<const std::size_t> corners);
 
@@ -32,7 +34,14 @@ class NodeMesh {
   MeshFile finish(const std::string& reason, const std::string& extra);
 
  private:
+  struct Attribute {
+    VertexAttribute mean;     // of the numbers so far, of the first vertices
+    std::vector<int> counts;  // of these numbers
+  };
+
   [[noreturn]] void refuse(const std::string& problem) const;
+  /// Gives an attribute an entry for each vertex so far.
+  void complete(Attribute& attribute) const;
 
   std::string file_;
   Mesh mesh_;
@@ -42,6 +51,7 @@ class NodeMesh {
   std::size_t first_uv_ = 0, part_uvs_ = 0, stored_ = 0;
   std::size_t part_material_ = 0;   // counted from 1; 0: none
   std::vector<int> part_vertices_;  // the vertex of each position of the part
+  std::vector<Attribute> attributes_;
 };
 
 }  // namespace muslin
