@@ -10,6 +10,7 @@
 
 #include "cache/scratch.hpp"
 #include "support/sheet.hpp"
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -121,6 +122,47 @@ TEST(SoftPinRun, WeightsVaryByAMap) {
   EXPECT_THROW(pinned(shell, "0"), Error);
 }
 
+TEST(SoftPinRun, KeyframesOfOneWeightEqualItBitForBit) {
+  const std::string hand = "[[pin]]\nname = 'hand'\nstiffness = 2\ndamping = 0.1\n" + everywhere;
+  const Simulation number = after(sheet(hand + "weight = 0.3\n"), 8),
+                   keyed =
+                       after(sheet(hand + "weight = { keyframes = [{ time = 0, value = 0.3 }, { time = 0.1, "
+                                          "value = 0.3 }] }\n"),
+                             8);
+  EXPECT_EQ(number.state().positions, keyed.state().positions);
+}
+
+// A weight that falls from 1 to ½ doubles the way by which the pin gives.
+TEST(SoftPinRun, WeightsVaryInTime) {
+  const std::string hand = "[[pin]]\nname = 'hand'\nstiffness = 2\ndamping = 0.05\n" + everywhere;
+  const auto model =
+      sheet(hand +
+            "weight = { keyframes = [{ time = 1.9, value = 1, interpolation = 'smooth' }, { time "
+            "= 2.1, value = 0.5 }] }\n");
+  Simulation simulation = after(model, 45);
+  EXPECT_NEAR(centre(simulation).y(), -mass * g / 2, 1e-3 * mass * g / 2);
+  const double start = simulation.diagnostics().balance() - simulation.diagnostics().unbalanced;
+  while (simulation.frame() < 96) simulation.advance();
+  EXPECT_NEAR(centre(simulation).y(), -mass * g, 1e-3 * mass * g);
+  EXPECT_NEAR(simulation.pin_force("hand").sum.y(), mass * g, 1e-3 * mass * g);
+  EXPECT_NEAR(simulation.diagnostics().balance() - simulation.diagnostics().unbalanced, start, 1e-10);
+}
+
+// One pin lets go while another takes over.
+TEST(SoftPinRun, WeightsHandOver) {
+  const auto hand = [](const char* name, int first, int last) {
+    return fmt::format(
+        "[[pin]]\nname = '{}'\nstiffness = 2\nweight = {{ keyframes = [{{ time = 1, value = {} }}, {{ time = "
+        "2, "
+        "value = {} }}] }}\n{}",
+        name, first, last, everywhere);
+  };
+  Simulation simulation = after(sheet(hand("a", 1, 0) + hand("b", 0, 1)), 48);
+  EXPECT_EQ(simulation.pin_force("a").sum.norm(), 0);
+  while (simulation.frame() < 90) simulation.advance();
+  EXPECT_NEAR(simulation.pin_force("b").sum.y(), mass * g, 1e-3 * mass * g);
+}
+
 TEST(SoftPinRun, SpringOfStiffnessKGivesWayByTheWeightOverKAtAnyResolution) {
   for (const int squares : {2, 5}) {
     const auto model = sheet("[[pin]]\nname = 'hand'\nstiffness = 2\n" + everywhere, "", squares);
@@ -224,6 +266,10 @@ TEST(SoftPinRun, WrongKeysAreErrors) {
   EXPECT_THAT(message("[[pin]]\nstiffness = 1\ntime = 1\n" + row), HasSubstr("both say how hard"));
   EXPECT_THAT(message("[[pin]]\ndamping = 1\n" + row), HasSubstr("stiffness"));
   EXPECT_THAT(message("[[pin]]\nweight = 0.5\n" + row), HasSubstr("only a soft pin has a weight"));
+  EXPECT_THAT(message("[[pin]]\nstiffness = 1\nweight = { keyframes = [{ time = 0.5, value = 2 }] }\n" + row),
+              HasSubstr("`weight` is 2 at 0.5 s; give a number from 0 to 1"));
+  EXPECT_THAT(message("[[pin]]\nstiffness = 1\nweight = { keyframes = [{ time = 0, value = 0 }] }\n" + row),
+              HasSubstr("its `weight` is 0 at every vertex"));
   EXPECT_THAT(message("[[pin]]\nstiffness = 0\n" + row), HasSubstr("stiffness"));
   EXPECT_THAT(message("[[pin]]\nkeyframes = [{ time = 0, scale = 0 }]\n" + row), HasSubstr("scale"));
   EXPECT_THAT(message("[[pin]]\nstiffness = 1\n" + row,

@@ -9,6 +9,7 @@
 
 #include "muslin/api.hpp"
 #include "muslin/constraint/acting.hpp"
+#include "muslin/core/keyed_number.hpp"
 #include "muslin/core/keyframes.hpp"
 #include "muslin/core/vectors.hpp"
 #include "muslin/geometry/point_sequence.hpp"
@@ -53,6 +54,7 @@ struct Pin {
   std::vector<int> points = {};  ///< #vertices: the point of the sequence that each follows
   std::vector<double> stiffness = {};  ///< #vertices, of the springs of a soft pin [N/m]; empty: a hard pin
   std::vector<double> damping = {};    ///< #vertices, against the motion of the target [N·s/m]; or empty
+  KeyedNumber weight = 1;              ///< of a soft pin over time: a factor of both
 
   bool is_soft() const { return !stiffness.empty(); }
   /// True if it acts in the step from time_begin to time_end.

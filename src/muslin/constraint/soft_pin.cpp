@@ -40,7 +40,10 @@ void put(const Vec3& vector, std::span<double> numbers, std::size_t first) {
 class SoftPin::Springs : public Potential {
  public:
   Springs(std::shared_ptr<const Pin> pin, std::vector<Vec3> anchors, const StepContext& step)
-      : pin_(std::move(pin)), anchors_(std::move(anchors)), dt_(step.dt) {
+      : pin_(std::move(pin)),
+        anchors_(std::move(anchors)),
+        dt_(step.dt),
+        weight_(pin_->weight.at(step.time_end)) {
     const PinTargets begin(*pin_, step.time_begin), end(*pin_, step.time_end);
     const double factor = step.dt / step.length;
     for (std::size_t i = 0; i < anchors_.size(); ++i) {
@@ -82,12 +85,13 @@ class SoftPin::Springs : public Potential {
 
  private:
   std::size_t vertex(std::size_t i) const { return static_cast<std::size_t>(pin_->vertices[i]); }
-  double stiffness(std::size_t i) const { return pin_->stiffness[i]; }
-  double drag(std::size_t i) const { return pin_->damping.empty() ? 0 : pin_->damping[i] / dt_; }
+  double stiffness(std::size_t i) const { return weight_ * pin_->stiffness[i]; }
+  double drag(std::size_t i) const { return pin_->damping.empty() ? 0 : weight_ * pin_->damping[i] / dt_; }
 
   std::shared_ptr<const Pin> pin_;
   std::vector<Vec3> anchors_;
   double dt_;                            // [s]
+  double weight_;
   std::vector<Vec3> targets_, carried_;  // by vertex of the pin [m]
 };
 
@@ -97,8 +101,8 @@ SoftPin::SoftPin(Pin pin) : array_(array_of(pin)) {
     return constants.size() == count &&
            std::all_of(constants.begin(), constants.end(), [](double c) { return c >= 0; });
   };
-  require(fit(pin.stiffness) && (pin.damping.empty() || fit(pin.damping)),
-          "a soft pin needs a stiffness for each vertex, and a damping for each or none",
+  require(fit(pin.stiffness) && (pin.damping.empty() || fit(pin.damping)) && pin.weight.least() >= 0,
+          "a soft pin needs a stiffness for each vertex, a damping for each or none, and a weight",
           "give numbers of 0 or more");
   pin_ = std::make_shared<const Pin>(std::move(pin));
 }

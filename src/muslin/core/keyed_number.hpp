@@ -21,12 +21,14 @@ struct MUSLIN_API KeyedNumber {
   double at(double time) const { return is_constant() ? keys.front().value : value_at(keys, time); }
   /// ∫₀ᵗ at(s) ds for t ≥ 0, exactly.
   double integral(double time) const { return integral_over(keys, 0, time); }
-  /// Returns the least number at any time: that of a key, as the way between two never overshoots.
-  double least() const {
-    const auto lower = [](const Key& a, const Key& b) { return a.value < b.value; };
-    return std::min_element(keys.begin(), keys.end(), lower)->value;
-  }
+  /// Return the least and the greatest number at any time: those of keys, as the way between two never
+  /// overshoots.
+  double least() const { return std::min_element(keys.begin(), keys.end(), is_lower)->value; }
+  double greatest() const { return std::max_element(keys.begin(), keys.end(), is_lower)->value; }
   bool operator==(const KeyedNumber&) const = default;
+
+ private:
+  static bool is_lower(const Key& a, const Key& b) { return a.value < b.value; }
 };
 
 }  // namespace muslin

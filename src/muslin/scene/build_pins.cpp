@@ -13,6 +13,7 @@
 #include "muslin/core/index.hpp"
 #include "muslin/scene/pin_sequence.hpp"
 #include "muslin/scene/pin_table.hpp"
+#include "muslin/schema/over_time.hpp"
 
 namespace muslin {
 namespace {
@@ -32,10 +33,10 @@ Vec3 centre_of(const Model& model, const std::vector<int>& vertices) {
 /// left with critical damping, is 1 %.
 constexpr double settled = 6.638;
 
-/// Returns the weight of each vertex of a pin.
+/// Returns the weight of each vertex of a pin; `greatest` is that of a pin without a map.
 std::vector<double> weights_of(const Model& model, const PinSettings& settings, const Component& body,
-                               const Pin& pin) {
-  std::vector<double> weights(pin.vertices.size(), settings.weight);
+                               const Pin& pin, double greatest) {
+  std::vector<double> weights(pin.vertices.size(), greatest);
   std::vector<MappedNumber> maps =
       read_maps(settings.variations, pin_table(), {model.scene.file, model.scene.meshes}, body);
   if (maps.empty()) return weights;
@@ -91,8 +92,11 @@ void build_pins(Model& model) {
     Pin pin;
     pin.name = settings.name;
     pin.vertices = to_model(body, body.held_vertices(settings.where, "pin " + settings.name));
-    std::vector<double> weights = weights_of(model, settings, body, pin);
+    pin.weight = *schema::over_time(settings.variations, "weight", settings.weight);
+    const double greatest = pin.weight.greatest();
+    std::vector<double> weights = weights_of(model, settings, body, pin, greatest);
     drop_weightless(settings, pin, weights);
+    for (KeyedNumber::Key& key : pin.weight.keys) key.value /= greatest;
     pin.from = settings.from;
     pin.until = settings.until;
     pin.motion = settings.motion;

@@ -36,7 +36,7 @@ std::vector<schema::Key> softness_keys() {
               .means("of the whole pin, against motion relative to the target"),
           schema::number("weight", &PinSettings::weight)
               .range(Range::between(0, 1))
-              .varies(&PinSettings::variations, {.map = true})
+              .varies(&PinSettings::variations, {.map = true, .keyframes = true})
               .shown_if<PinSettings>([](const PinSettings& pin) { return pin.is_soft(); })
               .means("of a soft pin at each vertex, as a factor of stiffness and damping; where it is 0 the "
                      "vertex is free")};

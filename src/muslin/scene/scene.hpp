@@ -64,7 +64,7 @@ struct PinSettings {
   std::optional<double> time;       ///< in place of the stiffness: time in which it pulls its body there [s]
   double damping = 0;               ///< of all its dashpots together [N·s/m]
   double weight = 1;                ///< of its springs and dashpots, 0 to 1
-  schema::Variations variations;    ///< of `weight`, by a map
+  schema::Variations variations;    ///< of `weight`
   Motion motion;
   std::optional<Vec3> pivot;  ///< of the motion [m]; default: the centre of the held vertices at rest
   std::string sequence;       ///< in place of the motion: path of a file of moving points; empty: none
