@@ -29,7 +29,7 @@ const Table& tyre_table() {
                      .varies(&Tyre::variations, {.map = true})
                      .means("how it holds"),
                  number("load", &Tyre::load).range({0, 1e9, true}).varies(&Tyre::variations, {true, true}),
-                 number("radius", &Tyre::radius)});
+                 number("radius", &Tyre::radius).steady("a tyre keeps its size")});
   return table;
 }
 
@@ -105,6 +105,9 @@ TEST(Variation, IsCheckedAtEachOfItsValues) {
   EXPECT_THAT(message("load = { map = 'a', keyframes = [{ time = 0, value = 1 }], from = 1, to = 2 }"),
               HasSubstr("by a map or in time, not both"));
   EXPECT_THAT(message("radius = { map = 'a', from = 1, to = 2 }"), HasSubstr("is a table; give a number"));
+  EXPECT_THAT(
+      message("radius = { keyframes = [{ time = 0, value = 1 }] }"),
+      HasSubstr("tyre.toml:1:10: `radius` cannot vary by keyframes: a tyre keeps its size; give a number"));
 
   Tyre tyre = read("grip = { map = 'a', from = 1, to = 2 }");
   tyre.variations.front().from = -1;
@@ -120,6 +123,7 @@ TEST(Variation, IsPublishedBesideTheNumber) {
   EXPECT_THAT(json_schema(tyre_table(), "tyres"), HasSubstr("#/$defs/a_number_that_varies"));
   EXPECT_THAT(python_types(tyre_table()), HasSubstr("Optional[Union[float, \"ANumberThatVaries\"]]"));
   EXPECT_THAT(markdown(tyre_table()), HasSubstr("| how it holds; may be [a map](maps.md) |"));
+  EXPECT_THAT(markdown(tyre_table()), HasSubstr("; may be [a map](maps.md) or [keyframes](keyframes.md) |"));
 }
 
 }  // namespace

@@ -46,8 +46,9 @@ std::string key_cell(const Key& key) {
 
 std::string meaning_cell(const Key& key) {
   if (!key.forms.any()) return key.meaning;
-  const char* forms = !key.forms.keyframes ? "a map" : key.forms.map ? "a map or keyframes" : "keyframes";
-  return fmt::format("{}; may be [{}](maps.md)", key.meaning, forms);
+  return fmt::format("{}; may be {}{}{}", key.meaning, key.forms.map ? "[a map](maps.md)" : "",
+                     key.forms.map && key.forms.keyframes ? " or " : "",
+                     key.forms.keyframes ? "[keyframes](keyframes.md)" : "");
 }
 
 struct Row {
