@@ -41,6 +41,7 @@ std::vector<VerifyCase> fabric_bending_cases();
 std::vector<VerifyCase> fabric_membrane_cases();
 std::vector<VerifyCase> fabric_plate_cases();
 std::vector<VerifyCase> fabric_roof_cases();
+std::vector<VerifyCase> fabric_hemisphere_cases();
 std::vector<VerifyCase> fabric_motion_cases();
 std::vector<VerifyCase> fabric_hanging_cases();
 std::vector<VerifyCase> fabric_stick_slip_cases();

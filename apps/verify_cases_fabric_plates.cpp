@@ -38,7 +38,9 @@ std::string push(const Vec3& at, const Vec3& by) {
       at.x(), at.y(), at.z(), by.x(), by.y(), by.z());
 }
 
-/// A cylinder with free ends, pinched in its middle between two points: 0.1139 under a load of 100.
+/// A cylinder with free ends, pinched in its middle between two points: 0.1139 under a load of 100. Cells
+/// around are such that their rows along are even in number: a vertex of the mesh lies at each of the two
+/// points.
 double pinched_cylinder(const FabricMesh& of) {
   const double radius = 4.953, length = 10.35, circle = 2 * std::numbers::pi * radius, small = 1e-3;
   const Experiment experiment;
@@ -105,7 +107,7 @@ std::vector<VerifyCase> fabric_plate_cases() {
       {"fabric-plate-fine", "a square plate deflects as plate theory says, on finer meshes",
        "Navier's series; Timoshenko 1959", true, [] { return plate({16, 32}); }},
       {"fabric-cylinder", "a cylinder pinched in its middle deflects as a thin shell", "Takemoto & Cook 1973",
-       true, [] { return cylinder({20, 40, 80}); }},
+       true, [] { return cylinder({24, 48, 96}); }},
       {"fabric-twisted", "a twisted strip deflects as a thin shell", "MacNeal & Harder 1985", true,
        [] { return twisted({10, 20, 40}); }},
   };

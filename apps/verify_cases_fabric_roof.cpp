@@ -11,15 +11,6 @@ namespace {
 
 constexpr double far = 1e3;  // length of a rod; a vertex that moves by u across it moves by u²/(2 far) along
 
-/// Static equilibrium by a few steps of this length [s], long against the periods of the shell. Rods turn
-/// where one step is so long that loads would carry the shell far without its stiffness.
-std::string slow_steps(double step) {
-  return fmt::format(
-      "[time]\nframe_rate = {:.17g}\nsteps_per_frame = 1\nduration = 1e6\n"
-      "[solver]\neffort = \"exact\"\ntolerance = 1e-4\n",
-      1 / step);
-}
-
 /// The place that rods hang from.
 const std::string frame =
     "[[collider]]\nname = \"frame\"\nshape = \"box\"\nsize = [1, 1, 1]\ncenter = [0, 0, 900]\n";

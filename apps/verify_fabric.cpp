@@ -100,6 +100,13 @@ std::string probe(const std::string& name, const Vec3& at) {
                      at.z());
 }
 
+std::string slow_steps(double step) {
+  return fmt::format(
+      "[time]\nframe_rate = {:.17g}\nsteps_per_frame = 1\nduration = 1e6\n"
+      "[solver]\neffort = \"exact\"\ntolerance = 1e-4\n",
+      1 / step);
+}
+
 double tolerance_around(const FabricMesh& of) { return FabricMesh{of.kind, of.cells / 2}.tolerance(); }
 
 std::string fabric_pin(double x0, double y0, double x1, double y1, const std::string& keyframes) {

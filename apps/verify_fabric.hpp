@@ -63,6 +63,10 @@ std::string point_force(const Vec3& at, const Vec3& force);
 /// A probe of this name.
 std::string probe(const std::string& name, const Vec3& at);
 
+/// Static equilibrium by a few steps of this length [s]: long against the periods of the shell, and short
+/// enough that loads do not carry it far where nothing but inertia or a rod resists.
+std::string slow_steps(double step);
+
 /// The tolerance of a mesh whose cells go around a circle, of which half counts, by symmetry.
 double tolerance_around(const FabricMesh& of);
 
