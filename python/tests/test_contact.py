@@ -114,3 +114,18 @@ def test_a_collider_may_be_a_mesh_in_memory(tmp_path):
     assert run.is_collider("table") and not run.has_lattice("table")
     assert run.points(0).shape == (169, 3)
     assert np.allclose(run.points(0, "table")[:, 1].max(), 0.1, atol=1e-6)
+
+
+def test_friction_may_change_over_time():
+    falls = {"keyframes": [{"time": 0, "value": 0.5}, {"time": 1, "value": 0.1, "interpolation": "step"}]}
+    tables = drop_tables()
+    tables["contact"]["friction"] = falls
+    tables["body"][0]["friction"] = falls
+    tables["collider"][0]["friction"] = falls
+    tables["contact"]["pair"] = [{"between": ["cloth", "floor"], "friction": falls}]
+    resolved = muslin.make_scene(tables).resolved
+    for owner in (resolved["contact"], resolved["body"][0], resolved["collider"][0], resolved["contact"]["pair"][0]):
+        assert [key["value"] for key in owner["friction"]["keyframes"]] == [0.5, 0.1]
+    tables["contact"]["friction"] = {"keyframes": [{"time": 0, "value": -1}]}
+    with pytest.raises(muslin.InputError, match="`friction` is -1 at 0 s"):
+        muslin.make_scene(tables)
