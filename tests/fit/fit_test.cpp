@@ -400,6 +400,14 @@ TEST(Drape, FindsTheBendingOfAKnownDrape) {
   EXPECT_EQ(warp.from, "drape");
 }
 
+TEST(Drape, DenimDrapesAlikeOnAnyTriangulation) {
+  DrapeOptions options = coarse;
+  for (const char* mesh : {"right", "crossed", "equilateral", "delaunay"}) {
+    options.mesh = mesh;
+    EXPECT_NEAR(drape_coefficient(find_material("denim"), {}, options), 0.81, 0.03) << mesh;
+  }
+}
+
 TEST(Drape, ImpossibleCoefficientNamesTheRange) {
   try {
     fit_fabric(draped(0.999), coarse);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "muslin/geometry/mesh.hpp"
+#include "muslin/geometry/triangulated_strip.hpp"
+#include "muslin/geometry/weld.hpp"
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/scene.hpp"
 #include "muslin/simulation/simulation.hpp"
@@ -46,32 +48,33 @@ constexpr double unevenness = 0.002;  // of the start over the overhang [m]
 /// A ring of cloth from one row inside of the edge of the support to its own edge, level at y = 0. Both rows
 /// of the support are the group `held`: a clamp.
 struct Ring {
-  Ring(const DrapeTest& test, int rings)
+  Ring(const DrapeTest& test, const DrapeOptions& options)
       : inner(test.support_diameter / 2), width((test.specimen_diameter - test.support_diameter) / 2) {
-    const double cell = width / rings;
+    const double cell = width / options.rings;
     // Cells in the middle of the overhang are square.
-    sectors = 4 * static_cast<int>(std::round(tau * (inner + width / 2) / cell / 4));
-    rows = rings + 2;
-    for (int row = 0; row < rows; ++row)
-      for (int sector = 0; sector < sectors; ++sector) {
-        const double radius = inner + (row - 1) * cell, angle = tau * sector / sectors;
-        mesh.positions.emplace_back(radius * std::cos(angle), 0, -radius * std::sin(angle));
-      }
-    for (int row = 0; row + 1 < rows; ++row)
-      for (int sector = 0; sector < sectors; ++sector) {
-        const int next = (sector + 1) % sectors;
-        mesh.add_face(std::array{vertex(row, sector), vertex(row + 1, sector), vertex(row + 1, next),
-                                 vertex(row, next)});
-      }
+    const int sectors = 4 * static_cast<int>(std::round(tau * (inner + width / 2) / cell / 4));
+    const double strip_width = static_cast<double>(options.rings) / sectors;
+    Mesh strip = triangulated_strip(options.mesh, sectors, strip_width, false);
+    // The first vertices of the strip are those of its straight edge y = 0, which becomes that of the
+    // support.
+    const int more = static_cast<int>(strip.vertex_count());
+    strip.positions.reserve(strip.vertex_count() + static_cast<std::size_t>(sectors) + 1);
+    for (int i = 0; i <= sectors; ++i)
+      strip.positions.emplace_back(strip.positions[static_cast<std::size_t>(i)] - Vec3(0, 1.0 / sectors, 0));
+    for (int i = 0; i < sectors; ++i) strip.add_face(std::array{more + i, more + i + 1, i + 1, i});
+    for (Vec3& p : strip.positions) {
+      const double radius = inner + width * p.y() / strip_width, angle = tau * p.x();
+      p = {radius * std::cos(angle), 0, radius * std::sin(angle)};
+    }
+    mesh = weld(strip, 1e-3 * cell).mesh;
     MeshGroup held{"held", {}, {}};
-    for (int v = 0; v < 2 * sectors; ++v) held.vertices.push_back(v);
+    held.vertices.reserve(2 * static_cast<std::size_t>(sectors));
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+      if (mesh.positions[v].norm() < inner + 1e-3 * cell) held.vertices.push_back(static_cast<int>(v));
     mesh.groups.push_back(held);
   }
 
-  int vertex(int row, int sector) const { return row * sectors + sector; }
-
   double inner, width;
-  int sectors = 0, rows = 0;
   Mesh mesh;
 };
 
@@ -79,7 +82,7 @@ struct Ring {
 std::vector<Vec3> uneven(const Ring& ring, int drop) {
   std::vector<Vec3> positions = ring.mesh.positions;
   for (Vec3& p : positions) {
-    const double angle = std::atan2(-p.z(), p.x());
+    const double angle = std::atan2(p.z(), p.x());
     const double share = std::max(0.0, (std::hypot(p.x(), p.z()) - ring.inner) / ring.width);
     double wave = 0;
     for (int folds = 2; folds <= 9; ++folds)
@@ -95,8 +98,8 @@ double shadow(const Ring& ring, const std::vector<Vec3>& positions) {
   std::array<double, directions> farthest;
   farthest.fill(ring.inner);
   const auto spread = [&](int v, int w) {
-    const Vec2 a(positions[static_cast<std::size_t>(v)].x(), -positions[static_cast<std::size_t>(v)].z());
-    const Vec2 b(positions[static_cast<std::size_t>(w)].x(), -positions[static_cast<std::size_t>(w)].z());
+    const Vec2 a(positions[static_cast<std::size_t>(v)].x(), positions[static_cast<std::size_t>(v)].z());
+    const Vec2 b(positions[static_cast<std::size_t>(w)].x(), positions[static_cast<std::size_t>(w)].z());
     const double from = std::atan2(a[1], a[0]) / tau * directions;
     const double turn = std::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]) / tau * directions;
     const int first = static_cast<int>(std::ceil(std::min(from, from + turn)));
@@ -110,11 +113,8 @@ double shadow(const Ring& ring, const std::vector<Vec3>& positions) {
       far = std::max(far, std::min(radius, std::max(a.norm(), b.norm())));
     }
   };
-  for (int row = 1; row < ring.rows; ++row)
-    for (int sector = 0; sector < ring.sectors; ++sector) {
-      spread(ring.vertex(row, sector), ring.vertex(row, (sector + 1) % ring.sectors));
-      if (row + 1 < ring.rows) spread(ring.vertex(row, sector), ring.vertex(row + 1, sector));
-    }
+  for (const Vec3i& t : triangulate(ring.mesh).triangles)
+    for (int c = 0; c < 3; ++c) spread(t[c], t[(c + 1) % 3]);
   double twice = 0;
   for (const double radius : farthest) twice += radius * radius * tau / directions;
   return twice / 2;
@@ -124,7 +124,7 @@ double shadow(const Ring& ring, const std::vector<Vec3>& positions) {
 
 double drape_coefficient(const Material& material, const DrapeTest& test, const DrapeOptions& options,
                          const Progress& progress) {
-  const Ring ring(test, options.rings);
+  const Ring ring(test, options);
   Scene scene = parse_scene(drape_scene, "drape.toml");
   ShellMaterial numbers = material.shell.value_or(ShellMaterial());
   numbers.mass_damping = settling;

@@ -3,6 +3,8 @@
 // 9073-9).
 #pragma once
 
+#include <string>
+
 #include "muslin/core/progress.hpp"
 #include "muslin/fit/measurements.hpp"
 #include "muslin/material/material.hpp"
@@ -13,6 +15,7 @@ struct DrapeOptions {
   int rings = 9;  ///< of cells from the support to the edge of the cloth
   int drops = 2;  ///< simulated drapes whose mean is taken, each from another small unevenness
   int most = 12;  ///< of the materials that a fit tries
+  std::string mesh = "right";  ///< triangulation of the ring, a kind of geometry/triangulated_strip
 };
 
 /// Returns the coefficient of a material with [shell], the mean of the drops. Limits of stretch do not act.
