@@ -180,7 +180,7 @@ ContactPair = TypedDict(
         "contact": Optional[bool],  # `false`: the two pass through each other · `true`: they meet, though an earlier pair says that they do not
         "thickness": Optional[float],  # distance of their midsurfaces when they touch; balls and capsules add their radius [m]
         "distance": Optional[float],  # contact distance: they repel each other where the gap is below it [m]
-        "friction": Optional[float],  # Coulomb's coefficient between them
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient between them
         "stiffness": Optional[float],  # stiffness of a contact between them [N/m]
         "from": Optional[float],  # time from which the pair is in force [s]
         "until": Optional[float],  # time when it ends, after `from` [s]
@@ -552,7 +552,7 @@ Contact = TypedDict(
     "Contact",
     {
         "distance": Optional[float],  # contact distance: surfaces repel each other where the gap is below it [m]
-        "friction": Optional[float],  # Coulomb's coefficient of each body and collider without its own `friction`
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of each body and collider without its own `friction`
         "tangled": Optional[Literal["refuse", "repair", "ignore"]],  # a start at which surfaces cross: `"refuse"` it · `"repair"` it before the first frame · `"ignore"`: leave them free of each other until they part
         "pair": Optional[Sequence["ContactPair"]],  # how two of them meet, in place of what they say of themselves
     },
@@ -569,7 +569,7 @@ PlaneCollider = TypedDict(
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
@@ -589,7 +589,7 @@ SphereCollider = TypedDict(
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
@@ -609,7 +609,7 @@ CapsuleCollider = TypedDict(
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
@@ -630,7 +630,7 @@ BoxCollider = TypedDict(
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
@@ -655,7 +655,7 @@ MeshCollider = TypedDict(
         "pivot": Optional[Vector],  # point about which `rotate` of the keyframes turns, before `translate` [m]
         "keyframes": Optional[Sequence["KeyframesOfAMotion"]],  # motion relative to its initial position: a list of tables; times ascend
         "contact": Optional[bool],  # `false` excludes it from contact; it is only drawn
-        "friction": Optional[float],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
+        "friction": Optional[Union[float, "ANumberThatVaries"]],  # Coulomb's coefficient of its surface; a [pair](#contact) has the geometric mean
         "layer": Optional[int],  # order outward (skin 0, shirt 1, jacket 2): at a [tangled start](contact.md#a-tangled-start) a body belongs outside those of lower layers
         "colour": Optional[Vector],  # colour in pictures [sRGB 0 to 1]
     },
