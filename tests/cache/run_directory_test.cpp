@@ -139,29 +139,35 @@ TEST(RunQuality, WarnsOfExceededStretchLimits) {
 }
 
 TEST(RunDirectory, ResumesWithATableOfAnEarlierVersion) {
-  Scratch scratch;
-  run_to(scratch / "run", 3, false);
-  const std::string table = bytes_of(scratch / "run/diagnostics.csv");
-  std::string old;
-  std::istringstream lines(table);
-  for (std::string line; std::getline(lines, line);) {
-    std::size_t end = 0;
-    for (int i = 0; i < 16; ++i) end = line.find(',', end + 1);
-    old += line.substr(0, end) + "\n";
+  for (const int columns : {16, 23}) {
+    SCOPED_TRACE(columns);
+    Scratch scratch;
+    run_to(scratch / "run", 3, false);
+    const std::string table = bytes_of(scratch / "run/diagnostics.csv");
+    std::string old;
+    std::istringstream lines(table);
+    for (std::string line; std::getline(lines, line);) {
+      std::size_t end = 0;
+      for (int i = 0; i < columns; ++i) end = line.find(',', end + 1);
+      old += line.substr(0, end) + "\n";
+    }
+    test::write_bytes(scratch / "run/diagnostics.csv", old);
+    const auto rows = RunReader(scratch / "run").diagnostics();
+    ASSERT_EQ(rows.size(), 4u);
+    EXPECT_GT(rows[3].wall_ms, 0);
+    EXPECT_EQ(rows[3].steps > 0, columns > 16);
+    run_to(scratch / "run", 5, true);
+    const auto more = RunReader(scratch / "run").diagnostics();
+    ASSERT_EQ(more.size(), 6u);
+    EXPECT_EQ(more[3].steps, rows[3].steps);
+    EXPECT_EQ(more[3].kinetic, rows[3].kinetic);
+    EXPECT_GT(more[5].steps, 0);
+    std::int64_t steps = 0;
+    for (const auto& row : more) steps += row.steps;
+    const auto run = nlohmann::json::parse(bytes_of(scratch / "run/run.json"));
+    EXPECT_EQ(run["convergence"]["steps"], steps);
+    EXPECT_THAT(bytes_of(scratch / "run/diagnostics.csv"), HasSubstr("penetration,behind\n"));
   }
-  test::write_bytes(scratch / "run/diagnostics.csv", old);
-  const auto rows = RunReader(scratch / "run").diagnostics();
-  ASSERT_EQ(rows.size(), 4u);
-  EXPECT_GT(rows[3].wall_ms, 0);
-  EXPECT_EQ(rows[3].steps, 0);
-  run_to(scratch / "run", 5, true);
-  const auto more = RunReader(scratch / "run").diagnostics();
-  ASSERT_EQ(more.size(), 6u);
-  EXPECT_EQ(more[3].steps, 0);
-  EXPECT_EQ(more[3].kinetic, rows[3].kinetic);
-  EXPECT_GT(more[5].steps, 0);
-  const auto run = nlohmann::json::parse(bytes_of(scratch / "run/run.json"));
-  EXPECT_EQ(run["convergence"]["steps"], more[4].steps + more[5].steps);
 }
 
 TEST(RunDirectory, HasTheDocumentedFiles) {

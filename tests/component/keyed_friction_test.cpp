@@ -62,17 +62,13 @@ class KeyedFriction : public testing::Test {
     scene.meshes["square"] = std::make_shared<Mesh>(mesh_);
     return std::make_shared<const Model>(build_model(scene));
   }
-  static std::vector<Vec3> positions(const Simulation& simulation) {
-    const ConstVectors x = simulation.state().positions;
-    return {x.begin(), x.end()};
-  }
   static void advance(Simulation& simulation, int frames) {
     for (int f = 0; f < frames; ++f) simulation.advance();
   }
   std::vector<Vec3> run(const Owners& owners, int frames = 8) const {
     Simulation simulation(model(owners));
     advance(simulation, frames);
-    return positions(simulation);
+    return simulation.state().positions;
   }
   /// Returns the mean over the vertices of the square, which come first.
   static Vec3 mean(const Simulation& simulation, ConstVectors values) {
@@ -174,7 +170,7 @@ TEST_F(KeyedFriction, HasTheSameBitsAcrossAResumeAndForAnyNumberOfThreads) {
   Simulation after(model(owners));
   after.restore(before.checkpoint());
   advance(after, 3);
-  EXPECT_EQ(positions(after), whole);
+  EXPECT_EQ(after.state().positions, whole);
   set_thread_count(1);
   EXPECT_EQ(run(owners, 8), whole);
   set_thread_count(0);

@@ -55,14 +55,10 @@ class ThicknessMaps : public testing::Test {
     scene.meshes["sheet"] = std::make_shared<Mesh>(sheet_);
     return std::make_shared<const Model>(build_model(scene));
   }
-  static std::vector<Vec3> positions(const Simulation& simulation) {
-    const ConstVectors x = simulation.state().positions;
-    return {x.begin(), x.end()};
-  }
   std::vector<Vec3> run(const std::string& keys, int frames) const {
     Simulation simulation(model(sheet("cloth", 0.0056, keys)));
     for (int f = 0; f < frames; ++f) simulation.advance();
-    return positions(simulation);
+    return simulation.state().positions;
   }
   std::string complaint(const std::string& thickness) const {
     try {
@@ -99,7 +95,7 @@ TEST_F(ThicknessMaps, KeepTwoSheetsApartEverywhere) {
   double least = 1;
   for (int f = 0; f < 36; ++f) {
     simulation.advance();
-    const std::vector<Vec3> x = positions(simulation);
+    const std::vector<Vec3> x = simulation.state().positions;
     const ClosestPointQuery lower(
         std::vector<Vec3>(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(count)), triangles);
     least = 1;
@@ -138,7 +134,7 @@ TEST_F(ThicknessMaps, CarryBallsAtTheThicknessBelowThem) {
   const auto height = [&](const char* name) {
     const Component& body = built.body(name);
     Vec3 sum = Vec3::Zero();
-    const std::vector<Vec3> x = positions(simulation);
+    const std::vector<Vec3> x = simulation.state().positions;
     for (int v = 0; v < body.vertex_count; ++v) sum += x[at(body.first_vertex + v)];
     return sum.y() / body.vertex_count;
   };

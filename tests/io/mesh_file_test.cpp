@@ -366,16 +366,15 @@ TEST(Gltf, LeavesOutAttributesWithoutDataOrOfMatrices) {
 }
 
 TEST(Gltf, ChecksTheContentOfTheFile) {
-  const auto with = altered_gltf;
-  refused(with("\"count\":6,\"type\":\"VEC3\"", "\"count\":600000000,\"type\":\"VEC3\""), ".gltf");
-  refused(with("\"byteOffset\":72", "\"byteOffset\":1000"), ".gltf");
-  refused(with("\"children\":[1]", "\"children\":[0]"), ".gltf");
-  refused(with("\"children\":[1]", "\"children\":[7]"), ".gltf");
-  refused(with("\"POSITION\":0", "\"POSITION\":9"), ".gltf");
-  refused(with("data:application/octet-stream;base64,", "elsewhere.bin?"), ".gltf");
-  refused(with("\"translation\":[0,0,5]", "\"translation\":[0,0,1e300]"), ".gltf");
-  refused(with("\"_PAINT\":2", "\"_PAINT\":9"), ".gltf");
-  std::string text = with("\"_PAINT\":2", "\"_PAINT\":3");
+  refused(altered_gltf("\"count\":6,\"type\":\"VEC3\"", "\"count\":600000000,\"type\":\"VEC3\""), ".gltf");
+  refused(altered_gltf("\"byteOffset\":72", "\"byteOffset\":1000"), ".gltf");
+  refused(altered_gltf("\"children\":[1]", "\"children\":[0]"), ".gltf");
+  refused(altered_gltf("\"children\":[1]", "\"children\":[7]"), ".gltf");
+  refused(altered_gltf("\"POSITION\":0", "\"POSITION\":9"), ".gltf");
+  refused(altered_gltf("data:application/octet-stream;base64,", "elsewhere.bin?"), ".gltf");
+  refused(altered_gltf("\"translation\":[0,0,5]", "\"translation\":[0,0,1e300]"), ".gltf");
+  refused(altered_gltf("\"_PAINT\":2", "\"_PAINT\":9"), ".gltf");
+  std::string text = altered_gltf("\"_PAINT\":2", "\"_PAINT\":3");
   text.replace(text.find("],\n\"bufferViews"), 1,
                ",{\"bufferView\":2,\"componentType\":5123,\"count\":5,\"type\":\"SCALAR\"}]");
   EXPECT_THAT(refused(text, ".gltf").what(), HasSubstr("the attribute _PAINT has 5 values for 6 positions"));

@@ -239,7 +239,7 @@ TEST(RunReport, JudgesWhatTheTablesSay) {
   }
   EXPECT_EQ(promise(report, "gaps_stay_open").measured, -0.002);
   EXPECT_THAT(promise(report, "paths_are_followed").finding,
-              HasSubstr("up to 2 vertices, by up to 4.2 mm, in"));
+              HasSubstr("up to 2 vertices in frame 3, by up to 4.2 mm."));
 }
 
 TEST(RunReport, HoldsLimitsOfStretch) {

@@ -27,8 +27,8 @@ std::string missed_text(const RunQuality& quality) {
 std::string held_back_text(const RunQuality& quality) {
   return fmt::format(
       "pins or colliders that move could not follow their keyframes in {}: something held back up to {} of "
-      "their vertices, by up to {:.3g} mm; {}",
-      describe_frames(quality.frames_held_back), quality.max_held_back, 1000 * quality.farthest_behind,
+      "their vertices{}; {}",
+      describe_frames(quality.frames_held_back), quality.max_held_back, behind_text(quality),
       ends_in(quality.frames_held_back, quality.last_frame) ? "they still are behind"
                                                             : "they have caught up");
 }
@@ -52,6 +52,11 @@ std::string overstretched_text(const RunQuality::Overstretched& shell) {
 }
 
 }  // namespace
+
+std::string behind_text(const RunQuality& quality) {
+  return quality.farthest_behind > 0 ? fmt::format(", by up to {:.3g} mm", 1000 * quality.farthest_behind)
+                                     : "";
+}
 
 void RunQuality::add(const LimitedStretch& row) {
   if (!(row.stretch > row.limit + stretch_slack)) return;

@@ -39,6 +39,10 @@ struct MUSLIN_API RunQuality {
 /// frames. `frames` must ascend and not be empty.
 MUSLIN_API std::string describe_frames(const std::vector<int>& frames);
 
+/// Returns how far what is held back is behind, such as ", by up to 4.2 mm"; nothing where a table of an
+/// earlier version does not say.
+MUSLIN_API std::string behind_text(const RunQuality& quality);
+
 /// Returns warnings for the user, one sentence each; empty if there is no defect.
 MUSLIN_API std::vector<std::string> warnings_of(const RunQuality& quality);
 

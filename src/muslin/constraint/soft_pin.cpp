@@ -91,7 +91,7 @@ class SoftPin::Springs : public Potential {
   std::shared_ptr<const Pin> pin_;
   std::vector<Vec3> anchors_;
   double dt_;                            // [s]
-  double weight_;
+  double weight_;                        // of the pin at the end of the step
   std::vector<Vec3> targets_, carried_;  // by vertex of the pin [m]
 };
 

@@ -11,9 +11,9 @@
 namespace muslin {
 
 /// The force −k (x − t) − c (v − dt/dτ) on every vertex, with its target t at the end of the step, and with k
-/// and c times the pin's weight at that time. The pin is
-/// outside of the bodies: its springs store no energy of theirs, and its force does work on them, like that
-/// of a hard pin. The anchors of the vertices and their forces are in the history.
+/// and c times the pin's weight at that time. The pin is outside of the bodies: its springs store no energy
+/// of theirs, and its force does work on them, like that of a hard pin. The anchors of the vertices and their
+/// forces are in the history.
 class SoftPin : public Load {
  public:
   /// Errors: usage, if numbers of vertices and constants differ, or a constant or weight is negative.

@@ -302,9 +302,9 @@ class Judge {
     set(p, p.frames.empty(),
         p.frames.empty()
             ? std::string("Nothing was held back.")
-            : fmt::format("An obstacle held back up to {}, by up to {:.3g} mm, in {}.",
+            : fmt::format("An obstacle held back up to {} in {}{}.",
                           counted(static_cast<std::size_t>(quality.max_held_back), "vertex", "vertices"),
-                          1000 * quality.farthest_behind, in_frames(p)));
+                          in_frames(p), behind_text(quality)));
     return p;
   }
 

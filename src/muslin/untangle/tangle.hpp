@@ -33,7 +33,7 @@ struct Tangle {
   std::size_t size() const { return crossing.size() + wrong.size() + close_count; }
 };
 
-/// What a repair does more when steps did not help.
+/// Further means of a repair whose steps did not help.
 struct Persistence {
   double firmness = 1;    ///< of separations, over the stiffness of contact
   bool flattens = false;  ///< true if all folds of a surface through itself are flattened
