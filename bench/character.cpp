@@ -44,11 +44,16 @@ enum Bone {
 /// Lengths below are shares of the stature, for a girth of 1.
 constexpr double blend = 0.014;          // radius of the smooth union
 constexpr double skin_softness = 0.018;  // over which bones share the skin
+/// Points of the skin that are at least this far from a bone's part at rest may cross it in a pose.
+constexpr double apart_at_rest = 0.03;
 constexpr double waist = 0.62, under_arms = 0.715, hips = 0.55, hem = 0.3;
 constexpr double sleeve_from = 0.45;                  // along the upper arm
 constexpr double skin_cell = 0.015;                   // of the mesh of the skin
+constexpr double coarse_cell = 0.03;                  // of the mesh that crossings are measured on
 constexpr int dress_around = 52, sleeve_around = 19;  // vertices of a ring
 constexpr int frames = 60, frame_rate = 24;
+/// A pose is taken as far as parts of the body cross by this, or this many times as far [m].
+constexpr double least_crossing = 0.004, deepest_crossing = 0.016, least_reach = 0.4, farthest_reach = 1.3;
 
 /// A cone with round ends.
 struct Part {
@@ -123,7 +128,9 @@ class Character {
     vary_ = Vec3(numbers.between(-0.08, 0.08), numbers.between(-0.08, 0.08), numbers.between(-0.08, 0.08));
     ease = numbers.between(0.008, 0.016);
     flare = numbers.between(0.15, 0.4);
+    crossing_ = numbers.between(least_crossing, deepest_crossing);
     make_parts();
+    choose_reach();
   }
 
   const char* pose() const { return pose_.name; }
@@ -159,17 +166,23 @@ class Character {
   std::vector<Vec3> posed(ConstVectors rest, double time) const;
   std::vector<Vec3> carried(ConstVectors rest, Bone bone, double time) const;
 
+  /// The deepest that a point of the skin is in another part of the body at `time` [m].
+  double crossing(ConstVectors rest, double time) const;
+
   double stature;
   double ease;   ///< of the dress under the arms [m]
   double flare;  ///< radius that the dress gains by height
 
  private:
   void make_parts();
+  void choose_reach();
   std::array<Move, bone_count> moves(double time) const;
 
   int index_;
   Pose pose_;
   double girth_, arms_;
+  double crossing_;   // wanted [m]
+  double reach_ = 1;  // share of the way to the pose
   Vec3 vary_;
   std::vector<Part> parts_;
   std::array<Vec3, bone_count> joints_;
@@ -339,8 +352,8 @@ std::array<Move, bone_count> Character::moves(double time) const {
   const bool raises = std::string_view(pose_.name) == "raised arms";
   const double reached = smooth((time - 0.25) / 0.9);
   const double back = raises ? 0 : smooth((time - 1.6) / 0.8);
-  const double share = reached - back;
-  const double lowered = smooth((time - 0.2) / 0.5), raised = smooth((time - 1) / 0.9);
+  const double share = reach_ * (reached - back);
+  const double lowered = reach_ * smooth((time - 0.2) / 0.5), raised = smooth((time - 1) / 0.9);
   std::array<Move, bone_count> moves;
   const auto turn = [&](Bone bone, const Move& parent, const Rotation& rotation) {
     const Vec3& joint = joints_[bone];
@@ -397,6 +410,37 @@ std::vector<Vec3> Character::posed(ConstVectors rest, double time) const {
     posed.push_back(sum / total);
   }
   return posed;
+}
+
+double Character::crossing(ConstVectors rest, double time) const {
+  const std::array<Move, bone_count> bones = moves(time);
+  const std::vector<Vec3> now = posed(rest, time);
+  double deepest = 0;
+  for (const Part& part : parts_) {
+    const Move back = bones[part.bone].inverse();
+    for (std::size_t v = 0; v < rest.size(); ++v)
+      if (part.distance(rest[v]) > apart_at_rest * stature)
+        deepest = std::max(deepest, -part.distance(back * now[v]));
+  }
+  return deepest;
+}
+
+void Character::choose_reach() {
+  const Mesh coarse = skin(coarse_cell);
+  const auto deepest = [&] {
+    double most = 0;
+    for (int frame = 0; frame <= frames; frame += 4)
+      most = std::max(most, crossing(coarse.positions, static_cast<double>(frame) / frame_rate));
+    return most;
+  };
+  double low = least_reach, high = farthest_reach;
+  reach_ = high;
+  if (deepest() <= crossing_) return;
+  for (int i = 0; i < 8; ++i) {
+    reach_ = (low + high) / 2;
+    (deepest() <= crossing_ ? low : high) = reach_;
+  }
+  reach_ = low;
 }
 
 std::vector<Vec3> Character::carried(ConstVectors rest, Bone bone, double time) const {

@@ -370,7 +370,7 @@ TEST(Fit, LowBiasIsRaisedToWhatResistsTwisting) {
 
 // --- drape, on a coarse mesh ---
 
-constexpr DrapeOptions coarse{4, 1, 8};
+const DrapeOptions coarse{4, 1, 8};
 
 Measurements draped(double coefficient) {
   Measurements m;

@@ -134,8 +134,6 @@ void ContactGuard::begin(ConstVectors q, std::span<const std::uint8_t> held) {
   forget_renewed();
   start_.assign(q.begin(), q.end());
   held_.assign(held.begin(), held.end());
-  const std::vector<std::uint8_t>& prescribed = model_->limits.prescribed;
-  for (std::size_t v = 0; v < prescribed.size(); ++v) held_[v] |= prescribed[v];
 }
 
 void ContactGuard::find_candidates(ConstVectors begin, ConstVectors end, double margin) {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "muslin/core/parallel.hpp"
-#include "muslin/potential/vertex_drag.hpp"
+#include "muslin/potential/anchor_springs.hpp"
 
 namespace muslin {
 namespace {
@@ -29,7 +29,7 @@ std::unique_ptr<Potential> DragField::potential(const StepContext& step) const {
       coefficients[v] = masses_[v] * strength * weight * rate / step.dt;
     }
   });
-  return std::make_unique<VertexDrag>(std::move(coefficients), step.anchor);
+  return std::make_unique<AnchorSprings>(std::move(coefficients), step.anchor);
 }
 
 }  // namespace muslin

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "muslin/potential/vertex_drag.hpp"
+#include "muslin/potential/anchor_springs.hpp"
 
 namespace muslin {
 
@@ -14,7 +14,7 @@ std::unique_ptr<Potential> MassDamping::potential(const StepContext& step) const
   const double factor = alpha_ / step.dt;
   std::vector<double> coefficients = masses_;
   for (double& c : coefficients) c *= factor;
-  return std::make_unique<VertexDrag>(std::move(coefficients), step.anchor);
+  return std::make_unique<AnchorSprings>(std::move(coefficients), step.anchor);
 }
 
 }  // namespace muslin

@@ -45,6 +45,8 @@ class Advance {
     const auto loads = terms_.potentials_of_loads(context);
     Holds next = hold(context, before);
     predict(settings.integrator, before, context);
+    const std::unique_ptr<Potential> springs =
+        scratch_.yielding.free(before, context, scratch_.fixed, scratch_.targets, scratch_.masses);
     if (guard_) guard_->follow_time(before.positions, context.time_begin, context.time_end);
 
     const std::vector<double> accelerations =
@@ -65,7 +67,13 @@ class Advance {
       problem.potentials.push_back(loads[i].get());
       if (terms_.loads[i].role == EnergyRole::dissipation) problem.dampings.push_back(loads[i].get());
     }
+    if (springs) {
+      problem.potentials.push_back(springs.get());
+      problem.yielding = {scratch_.yielding.vertices(), springs.get()};
+    }
     StepReport report = scratch_.stepper.step(settings, context, problem, state_.motion);
+    report.held_back +=
+        scratch_.yielding.hold(state_.motion.positions, scratch_.fixed, scratch_.targets, scratch_.masses);
     const bool missed = report.made() && !report.converged && halvings < patience() &&
                         settings.integrator != Integrator::linearly_implicit_euler;
     if (missed || (standing && !report.made())) take_back(standing ? *standing : before, contact);
@@ -207,12 +215,13 @@ void Scratch::prepare(const Model& model) {
   const std::size_t count = model.vertex_count();
   if (masses.size() == count) return;
   parts = find_parts(model);
+  yielding = Yielding(model);
   fixed.assign(count, 0);
   targets.assign(count, Vec3::Zero());
-  // Prescribed vertices have no mass, but solvers divide by masses before they leave them out.
+  // Solvers divide by masses before they leave out prescribed vertices, which have none.
   masses = model.masses;
   for (const Prescribed& motion : model.prescribed)
-    std::fill_n(masses.begin() + motion.first, motion.start.size(), 1.0);
+    std::fill_n(masses.begin() + motion.first, motion.start.size(), mass_of_prescribed);
 }
 
 RunCosts Scratch::costs() const {

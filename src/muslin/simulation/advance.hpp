@@ -12,6 +12,7 @@
 #include "muslin/simulation/diagnostics.hpp"
 #include "muslin/simulation/model_parts.hpp"
 #include "muslin/simulation/run_state.hpp"
+#include "muslin/simulation/yielding.hpp"
 #include "muslin/solver/solver.hpp"
 
 namespace muslin {
@@ -45,6 +46,7 @@ class Scratch {
   std::vector<Vec3> targets;        ///< #V by 3
   std::vector<double> masses;       ///< #V, for the solver: none is 0 [kg]
   ModelParts parts;
+  Yielding yielding;
   double linearize_seconds = 0, solve_seconds = 0;
 
  private:

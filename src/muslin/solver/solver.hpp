@@ -82,6 +82,14 @@ struct StepProblem {
   bool in_double = true;
   /// Those of `potentials` that damp: ½ (x − anchor)ᵀ C (x − anchor)/dt, with C the damping matrix.
   std::vector<const Potential*> dampings = {};
+  /// Vertices outside of all bodies that are free nevertheless, and the springs that hold them, one of
+  /// `potentials`. Their own error does not matter; that of the energy may be a share of what the springs
+  /// hold.
+  struct Yielding {
+    std::span<const int> vertices;
+    const Potential* springs = nullptr;  ///< null: there are no such vertices
+  };
+  Yielding yielding = {};
 };
 
 struct StepReport {

@@ -17,7 +17,8 @@ constexpr double bound_share = 0.1;
 /// An error of this share of an edge is always allowed.
 constexpr double smallest = 1e-14;
 /// Bound on the work of the residual over Σ m |Δx|², as a multiple of the tolerance: correct_work can remove
-/// this much.
+/// this much. Twice the energy of springs of yielding vertices, times dt², is added to the sum: they press
+/// with forces beside which those of inertia are nothing.
 constexpr double leak_share = 0.01;
 constexpr double slowest = 0.9;
 /// The linear system was solved for a part if |s| is at least this share of |P⁻¹g|.
@@ -35,14 +36,17 @@ StepError::StepError(const StepProblem& problem, const IncrementalPotential& fun
   std::size_t count = 1;
   for (const int part : problem.parts) count = std::max(count, static_cast<std::size_t>(part) + 1);
   parts_.resize(count);
+  counts_.resize(function.size());
+  for (std::size_t v = 0; v < function.size(); ++v) counts_[v] = function.held(v) ? 0 : 1;
+  for (const int v : problem.yielding.vertices) counts_[static_cast<std::size_t>(v)] = 0;
   for (std::size_t v = 0; v < function.size(); ++v)
-    if (!function.held(v)) parts_[part_of(v)].mass += problem.masses[v];
+    if (counts(v)) parts_[part_of(v)].mass += problem.masses[v];
 }
 
 void StepError::find_allowed(ConstVectors x) {
   const double dt = function_.dt();
   const auto squares = sum<double>([&](double& square, std::size_t v) {
-    if (!function_.held(v)) square += problem_.masses[v] * (x[v] - function_.prediction()[v]).squaredNorm();
+    if (counts(v)) square += problem_.masses[v] * (x[v] - function_.prediction()[v]).squaredNorm();
   });
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     Part& part = parts_[p];
@@ -58,8 +62,9 @@ void StepError::find_allowed(ConstVectors x) {
 
 bool StepError::bound(ConstVectors x, ConstVectors g) {
   find_allowed(x);
-  const auto squares =
-      sum<double>([&](double& square, std::size_t v) { square += g[v].squaredNorm() / problem_.masses[v]; });
+  const auto squares = sum<double>([&](double& square, std::size_t v) {
+    if (counts(v)) square += g[v].squaredNorm() / problem_.masses[v];
+  });
   bool good = true;
   largest_ = 0;
   for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -77,8 +82,9 @@ void StepError::begin(ConstVectors g, ConstVectors z) {
     void operator+=(const Sums& other) { norm += other.norm, foretold += other.foretold; }
   };
   const auto sums = sum<Sums>([&](Sums& s, std::size_t v) {
+    if (!counts(v)) return;
     s.norm += g[v].dot(z[v]);
-    if (!function_.held(v)) s.foretold += problem_.masses[v] * z[v].squaredNorm();
+    s.foretold += problem_.masses[v] * z[v].squaredNorm();
   });
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     parts_[p].norm = sums[p].norm;
@@ -99,7 +105,7 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
   };
   find_allowed(x);
   const auto sums = sum<Sums>([&](Sums& part, std::size_t v) {
-    if (function_.held(v)) return;
+    if (!counts(v)) return;
     const double m = problem_.masses[v], step = s[v].squaredNorm(), cut = (s[v] - t * d[v]).squaredNorm();
     const Vec3 moved = x[v] - from[v];
     part.norm += g[v].dot(z[v]);
@@ -112,6 +118,8 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
     part.moved += m * moved.squaredNorm();
   });
   bool good = true;
+  const Potential* yielding = problem_.yielding.springs;
+  const double held = yielding ? 2 * function_.dt() * function_.dt() * yielding->value(x) : 0;
   largest_ = worst_ratio_ = 0;
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     Part& part = parts_[p];
@@ -127,7 +135,8 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
     const double mean = (left * std::sqrt(sum.step) + std::sqrt(sum.cut)) / std::sqrt(part.mass);
     const double local = left * std::sqrt(sum.largest_step) + std::sqrt(sum.largest_cut);
     const double error = std::max(mean, local_share * local);
-    const double moved = sum.moved + part.mass * part.allowed * part.allowed / (tolerance_ * tolerance_);
+    const double moved =
+        sum.moved + part.mass * part.allowed * part.allowed / (tolerance_ * tolerance_) + held;
     good = good && error <= part.allowed && std::abs(sum.leak) <= leak_share * tolerance_ * moved;
     if (error >= worst_ratio_ * part.allowed) {
       worst_ratio_ = error / part.allowed;
@@ -140,7 +149,7 @@ bool StepError::end(ConstVectors x, ConstVectors from, ConstVectors g, ConstVect
 void StepError::give_up(ConstVectors s) {
   largest_ = 0;
   for (std::size_t v = 0; v < s.size(); ++v)
-    if (!function_.held(v)) largest_ = std::max(largest_, local_share * s[v].norm());
+    if (counts(v)) largest_ = std::max(largest_, local_share * s[v].norm());
 }
 
 double StepError::wanted_forcing() const { return worst_ratio_ > 0 ? 0.3 / worst_ratio_ : 1; }

@@ -14,6 +14,7 @@
 // acceleration due to loads and the actual acceleration in this step (root mean squares).
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "muslin/core/vectors.hpp"
@@ -52,6 +53,8 @@ class StepError {
   std::size_t part_of(std::size_t v) const {
     return problem_.parts.empty() ? 0 : static_cast<std::size_t>(problem_.parts[v]);
   }
+  /// False for vertices that are held or yield.
+  bool counts(std::size_t v) const { return counts_[v] != 0; }
   void find_allowed(ConstVectors x);
   template <class Sum, class Add>
   std::vector<Sum> sum(const Add& add) const;
@@ -59,6 +62,7 @@ class StepError {
   const StepProblem& problem_;
   const IncrementalPotential& function_;
   double tolerance_;
+  std::vector<std::uint8_t> counts_;
   std::vector<Part> parts_;
   double largest_ = 0;
   double worst_ratio_ = 1;  ///< of estimated to allowed error

@@ -1,4 +1,4 @@
-// VertexDrag resists the motion of single vertices.
+// AnchorSprings pulls single vertices to anchors.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace muslin {
 
-/// W = Σ ½ cᵢ |xᵢ − anchorᵢ|². With cᵢ = kᵢ / dt, of a step that takes v = (x − anchor) / dt as the velocity
-/// at its end, the force is −kᵢ vᵢ.
-class VertexDrag : public Potential {
+/// W = Σ ½ cᵢ |xᵢ − anchorᵢ|². It is also a drag: with cᵢ = kᵢ / dt and the step's own anchor, in which
+/// v = (x − anchor) / dt is the velocity at the end of the step, the force is −kᵢ vᵢ.
+class AnchorSprings : public Potential {
  public:
   /// coefficients: #V, ≥ 0 [N/m]; anchor: #V by 3 [m].
-  VertexDrag(std::vector<double> coefficients, std::vector<Vec3> anchor);
+  AnchorSprings(std::vector<double> coefficients, std::vector<Vec3> anchor);
 
   double value(ConstVectors x) const override;
   void add_gradient(ConstVectors x, Vectors g) const override;
