@@ -94,6 +94,7 @@ std::unique_ptr<Potential> Yielding::free(const State& before, StepContext& cont
                                           std::span<std::uint8_t> fixed, ConstVectors targets,
                                           std::span<double> masses) {
   vertices_.clear();
+  if (yields_.empty()) return nullptr;
   std::vector<Vec3> path(before.positions);
   bool behind = false;
   for (const Prescribed* motion : yields_) {

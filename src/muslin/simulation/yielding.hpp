@@ -2,9 +2,10 @@
 // is between them.
 //
 // Cloth between two parts of a body that pass through each other has no room: a collider that keeps to its
-// path presses until gaps are at their floor and no step converges. A vertex that begins a step behind its
-// path, and whose path leads into another obstacle, is free in this step. A spring pulls it to its path, and
-// what it presses pushes it back.
+// path presses until gaps are at their floor and no step converges. If a vertex of an animated mesh begins a
+// step behind its path, and the path leads into another obstacle, then all vertices of the mesh that are
+// behind, or whose paths lead into another obstacle, are free in this step. Springs pull them to their paths,
+// and what they press pushes them back.
 #pragma once
 
 #include <cstdint>
@@ -27,9 +28,9 @@ class Yielding {
   Yielding() = default;
   explicit Yielding(const Model& model);
 
-  /// Frees the pinched vertices in `before`, where the step begins: sets their fixed[v], masses[v] and
+  /// Frees vertices in `before`, where the step begins: sets their fixed[v], masses[v] and
   /// inertial predictions, #V each. Returns the springs to their targets, the places of their paths at the
-  /// end of the step; null if none is pinched.
+  /// end of the step; null if none is freed.
   std::unique_ptr<Potential> free(const State& before, StepContext& context, std::span<std::uint8_t> fixed,
                                   ConstVectors targets, std::span<double> masses);
   /// Holds them again; returns how many are behind at x, the end of the step.
