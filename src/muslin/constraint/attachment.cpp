@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "muslin/constraint/acting.hpp"
+#include "muslin/core/error.hpp"
 #include "muslin/core/hash.hpp"
 
 namespace muslin {
@@ -35,10 +36,12 @@ std::string array_of(const std::string& name, const Joints& joints) {
 
 class Attachment::Springs : public JointPotential {
  public:
-  Springs(const Attachment& attachment, std::vector<double> lengths)
+  Springs(const Attachment& attachment, std::vector<double> lengths, double time)
       : JointPotential(attachment.joints_, holding(lengths)),
         attachment_(attachment),
-        lengths_(std::move(lengths)) {}
+        lengths_(std::move(lengths)),
+        stiffness_(attachment.rules_.stiffness.at(time)),
+        strength_(attachment.rules_.strength.at(time)) {}
 
   double dissipated(ConstVectors x) const override {
     double lost = 0;
@@ -47,7 +50,7 @@ class Attachment::Springs : public JointPotential {
     return lost;
   }
   bool breaks(std::size_t j, ConstVectors x) const {
-    return answer(j, joints().apart(j, x)).gradient.norm() > joints().strength[j];
+    return answer(j, joints().apart(j, x)).gradient.norm() > strength_ * joints().strength[j];
   }
   /// Returns the lengths after a step that ends at x.
   std::vector<double> lengths_after(ConstVectors x) const {
@@ -59,30 +62,34 @@ class Attachment::Springs : public JointPotential {
 
  protected:
   JointAnswer answer(std::size_t j, const Vec3& z) const override {
-    return attachment_.answer(j, lengths_[j], z);
+    return attachment_.answer(stiffness_ * joints().stiffness[j], lengths_[j], z);
   }
 
  private:
   const Attachment& attachment_;
   std::vector<double> lengths_;
+  double stiffness_, strength_;  // factors
 };
 
 Attachment::Attachment(std::string name, const AttachmentRules& rules, std::shared_ptr<const Joints> joints)
-    : name_(std::move(name)), array_(array_of(name_, *joints)), rules_(rules), joints_(std::move(joints)) {}
+    : name_(std::move(name)), array_(array_of(name_, *joints)), rules_(rules), joints_(std::move(joints)) {
+  require(std::min({rules.stiffness.least(), rules.damping.least(), rules.strength.least()}) >= 0,
+          "the stiffness, damping or strength of an attachment is negative", "give factors of 0 or more");
+}
 
-JointAnswer Attachment::answer(std::size_t j, double length, const Vec3& z) const {
+JointAnswer Attachment::answer(double stiffness, double length, const Vec3& z) const {
   JointAnswer a;
-  const double k = joints_->stiffness[j], d = z.norm(), stretch = d - length;
-  if (rules_.rest == AttachmentRules::Rest::cord && stretch <= 0) return a;
-  a.energy = 0.5 * k * stretch * stretch;
-  a.along = a.across = k;
+  const double d = z.norm(), stretch = d - length;
+  if (is_slack(length, d)) return a;
+  a.energy = 0.5 * stiffness * stretch * stretch;
+  a.along = a.across = stiffness;
   if (length == 0) {
-    a.gradient = k * z;
+    a.gradient = stiffness * z;
     return a;
   }
   if (d > 0) a.normal = z / d;
-  a.gradient = k * stretch * a.normal;
-  a.across = d > 0 ? k * stretch / d : 0;
+  a.gradient = stiffness * stretch * a.normal;
+  a.across = d > 0 ? stiffness * stretch / d : 0;
   return a;
 }
 
@@ -101,7 +108,7 @@ std::vector<double> Attachment::lengths(const StepContext& step) const {
 std::unique_ptr<Potential> Attachment::potential(const StepContext& step) const {
   std::vector<double> now = lengths(step);
   if (now.empty()) return nullptr;
-  return std::make_unique<Springs>(*this, std::move(now));
+  return std::make_unique<Springs>(*this, std::move(now), step.time_end);
 }
 
 void Attachment::end_step(const Potential& potential, ConstVectors x, History& history) const {
@@ -115,7 +122,7 @@ AttachmentForce Attachment::force(double time, ConstVectors x, const History& hi
   if (lengths.empty() || !acting(rules_.from, rules_.until, time, time)) return force;
   for (std::size_t j = 0; j < lengths.size(); ++j) {
     if (lengths[j] == broken) continue;
-    const Vec3 pull = -answer(j, lengths[j], joints_->apart(j, x)).gradient;
+    const Vec3 pull = -answer(stiffness(j, time), lengths[j], joints_->apart(j, x)).gradient;
     force.sum += pull;
     force.mean += pull.norm();
     force.largest = std::max(force.largest, pull.norm());
@@ -129,11 +136,13 @@ class AttachmentDamping::Dashpots : public JointPotential {
  public:
   Dashpots(const Attachment& attachment, const std::vector<double>& lengths, const StepContext& step)
       : JointPotential(attachment.joints_, holding(lengths)), all_(lengths.size()) {
+    const double factor = attachment.rules_.damping.at(step.time_end);
     for (const std::size_t j : acting()) {
-      const JointAnswer spring = attachment.answer(j, lengths[j], joints().apart(j, step.positions));
-      const bool slack = spring.along == 0;
-      const double along = slack ? 0 : joints().damping[j] / step.dt;
-      all_[j] = {joints().apart(j, step.anchor), spring.normal, along, lengths[j] == 0 ? along : 0};
+      const Vec3 z = joints().apart(j, step.positions);
+      const double d = z.norm();
+      const double along = attachment.is_slack(lengths[j], d) ? 0 : factor * joints().damping[j] / step.dt;
+      all_[j] = {joints().apart(j, step.anchor), d > 0 ? Vec3(z / d) : Vec3::UnitX(), along,
+                 lengths[j] == 0 ? along : 0};
     }
   }
 

@@ -21,6 +21,7 @@
 #include "muslin/scene/model.hpp"
 #include "muslin/scene/selection_table.hpp"
 #include "muslin/schema/declare.hpp"
+#include "muslin/schema/over_time.hpp"
 
 namespace muslin {
 namespace {
@@ -62,16 +63,19 @@ schema::Table declare_attachment() {
                   "have when it begins · `\"cord\"`: they come no farther apart than that"),
        schema::number("stiffness", &Settings::stiffness)
            .unit("N/m")
-           .range({0, 1e9, true})
+           .range({0, 1e9, false})
+           .varies(&Settings::variations, {.keyframes = true})
            .otherwise("stiff: that of the material around each point")
            .means("of the whole attachment; each vertex has a share by its mass"),
        schema::number("damping", &Settings::damping)
            .unit("N·s/m")
            .range({0, 1e9, false})
+           .varies(&Settings::variations, {.keyframes = true})
            .means("of the whole attachment, against relative motion of the points"),
        schema::number("break_force", &Settings::break_force)
            .unit("N")
            .range({0, 1e12, true})
+           .varies(&Settings::variations, {.keyframes = true})
            .otherwise("it never breaks")
            .means("of the whole attachment: a vertex whose force exceeds its share is free from then on")});
   for (schema::Key& key :
@@ -79,12 +83,29 @@ schema::Table declare_attachment() {
     table.keys.push_back(key);
   schema::add_rule<Settings>(table, [](const Settings& s, const schema::Subject& subject) {
     check_window(s.from, s.until, subject);
+    if (const auto stiffness = schema::over_time(s.variations, "stiffness", s.stiffness);
+        stiffness && stiffness->greatest() == 0)
+      throw subject.error("stiffness", "an attachment of `stiffness` 0 holds nothing",
+                          "give a number above 0, at one keyframe at least, or leave it out for a stiff one");
     if (s.to == s.body && !s.where_to && !s.at)
       throw subject.error("to", fmt::format("`{}` is attached to its own nearest points", s.body),
                           "name another body, or choose points by `where_to` or `at`");
   });
   return table;
 }
+
+/// A number over time as its greatest value and a factor; without a number `otherwise` at all times.
+struct Scaled {
+  Scaled(const Settings& settings, const char* key, std::optional<double> number, double otherwise) {
+    const auto over_time = schema::over_time(settings.variations, key, number);
+    greatest = over_time ? over_time->greatest() : otherwise;
+    if (!over_time || greatest == 0) return;
+    factor = *over_time;
+    for (KeyedNumber::Key& each : factor.keys) each.value /= greatest;
+  }
+  double greatest = 0;
+  KeyedNumber factor = 1;
+};
 
 /// A point of a component.
 struct JointPoint {
@@ -99,6 +120,9 @@ class AttachmentBuilder {
       : model_(model),
         settings_(settings),
         what_("attachment " + settings.name),
+        stiffness_over_time_(settings, "stiffness", settings.stiffness, 0),
+        damping_(settings, "damping", settings.damping, 0),
+        strength_(settings, "break_force", settings.break_force, std::numeric_limits<double>::infinity()),
         body_(model.body(settings.body)),
         to_(model.body(settings.to)) {}
 
@@ -118,11 +142,15 @@ class AttachmentBuilder {
     share(mass);
     warn_of_stiffness();
     warn_of_breaking();
-    const AttachmentRules rules{static_cast<AttachmentRules::Rest>(settings_.rest), settings_.from,
-                                settings_.until};
+    const AttachmentRules rules{static_cast<AttachmentRules::Rest>(settings_.rest),
+                                settings_.from,
+                                settings_.until,
+                                stiffness_over_time_.factor,
+                                damping_.factor,
+                                strength_.factor};
     const auto springs = std::make_shared<const Attachment>(settings_.name, rules, joints_);
     model_.loads.push_back({settings_.name, EnergyRole::joint, springs});
-    if (settings_.damping > 0)
+    if (damping_.greatest > 0)
       model_.loads.push_back({settings_.name + ": damping", EnergyRole::dissipation,
                               std::make_shared<AttachmentDamping>(springs)});
     model_.attachments.push_back({settings_.name,
@@ -225,14 +253,15 @@ class AttachmentBuilder {
                                : rigid_share * point.mass / (stopping_time * stopping_time);
   }
 
-  /// Sets the constants of the joints, which share those of the attachment by the masses of their points.
+  /// Sets the greatest constants of the joints, which share those of the attachment by the masses of their
+  /// points.
   void share(double mass) {
     for (std::size_t j = 0; j < masses_.size(); ++j) {
       const double share = masses_[j] / mass;
-      joints_->stiffness.push_back(settings_.stiffness ? *settings_.stiffness * share : stiffness_[j]);
-      joints_->damping.push_back(settings_.damping * share);
-      joints_->strength.push_back(settings_.break_force ? *settings_.break_force * share
-                                                        : std::numeric_limits<double>::infinity());
+      joints_->stiffness.push_back(settings_.stiffness ? stiffness_over_time_.greatest * share
+                                                       : stiffness_[j]);
+      joints_->damping.push_back(damping_.greatest * share);
+      joints_->strength.push_back(strength_.greatest * share);
     }
   }
 
@@ -256,11 +285,13 @@ class AttachmentBuilder {
   /// Points that are joined start with a gap if the meshes do.
   void warn_of_breaking() {
     if (settings_.rest != Settings::Rest::joined) return;
+    const double stiffness = stiffness_over_time_.factor.at(settings_.from),
+                 strength = strength_.factor.at(settings_.from);
     std::size_t count = 0;
     double widest = 0;
     for (std::size_t j = 0; j < places_.size(); ++j) {
       const double gap = (places_[j][0] - places_[j][1]).norm();
-      if (joints_->stiffness[j] * gap <= joints_->strength[j]) continue;
+      if (stiffness * joints_->stiffness[j] * gap <= strength * joints_->strength[j]) continue;
       ++count;
       widest = std::max(widest, gap);
     }
@@ -275,6 +306,7 @@ class AttachmentBuilder {
   Model& model_;
   const Settings& settings_;
   std::string what_;
+  Scaled stiffness_over_time_, damping_, strength_;
   const Component &body_, &to_;
   std::shared_ptr<Joints> joints_ = std::make_shared<Joints>();
   std::vector<double> masses_, stiffness_;  // by joint

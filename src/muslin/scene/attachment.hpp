@@ -11,6 +11,7 @@
 #include "muslin/component/selection.hpp"
 #include "muslin/core/error.hpp"
 #include "muslin/core/vectors.hpp"
+#include "muslin/schema/variation.hpp"
 
 namespace muslin {
 
@@ -31,6 +32,7 @@ struct MUSLIN_API AttachmentSettings {
   std::optional<double> stiffness;    ///< of all springs together [N/m]; none: stiff
   double damping = 0;                 ///< of all dashpots together [N·s/m]
   std::optional<double> break_force;  ///< of all joints together [N]; none: it never breaks
+  schema::Variations variations;      ///< of stiffness, damping and force of breaking, by keyframes
   enum class Rest { joined, distance, cord } rest = Rest::joined;
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Place place;
