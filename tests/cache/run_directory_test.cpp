@@ -136,6 +136,10 @@ TEST(RunQuality, WarnsOfExceededStretchLimits) {
   from_start.add(LimitedStretch{0, 1.3, 1.05, "hem"});
   EXPECT_THAT(warnings_of(from_start),
               testing::ElementsAre(HasSubstr("it starts beyond the limit: check `rest_mesh`")));
+  RunQuality falling;
+  falling.add(LimitedStretch{0, 1.15, 1.2, "hem"});
+  falling.add(LimitedStretch{1, 1.15, 1.05, "hem"});
+  EXPECT_THAT(warnings_of(falling), testing::ElementsAre(HasSubstr("let `stretch_limit` fall more slowly")));
 }
 
 TEST(RunDirectory, ResumesWithATableOfAnEarlierVersion) {

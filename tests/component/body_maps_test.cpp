@@ -111,7 +111,7 @@ TEST_F(Maps, WeightTheVerticesOfAGroup) {
   const MappedNumber& map = cloth->bodies[0].maps.front();
   EXPECT_EQ(map.at(0), 1.2);
   EXPECT_EQ(map.at(columns), 1.1);
-  EXPECT_EQ(as_shell(cloth->bodies[0])->stretch_limit(), 1.2) << "the largest";
+  EXPECT_EQ(as_shell(cloth->bodies[0])->stretch_limit(0), 1.2) << "the largest";
 }
 
 TEST_F(Maps, TakeImagesByTextureCoordinates) {

@@ -128,13 +128,13 @@ TEST_F(Fabrics, DampEachItsOwnMass) {
 
 TEST_F(Fabrics, LimitTheirOwnStretchOnly) {
   const auto one = model(plain(soft), fabric("cuff", std::string(stiff) + ", stretch_limit = 1.01"));
-  EXPECT_FALSE(one->bodies[0].stretch_limit().has_value());
+  EXPECT_FALSE(one->bodies[0].stretch_limit(0).has_value());
   const auto each = model(plain(std::string(soft) + ", stretch_limit = 1.2"),
                           fabric("cuff", std::string(stiff) + ", stretch_limit = 1.01"));
-  EXPECT_EQ(each->bodies[0].stretch_limit(), 1.2) << "the largest";
+  EXPECT_EQ(each->bodies[0].stretch_limit(0), 1.2) << "the largest";
   const auto body = model("stretch_limit = 1.5\n" + plain(soft),
                           fabric("cuff", std::string(stiff) + ", stretch_limit = 1.01"));
-  EXPECT_EQ(body->bodies[0].stretch_limit(), 1.5) << "that of the body replaces all";
+  EXPECT_EQ(body->bodies[0].stretch_limit(0), 1.5) << "that of the body replaces all";
   const std::string pull = "[[force]]\ntype = 'point'\nforce = [3, 0, 0]\nwhere = { group = 'tip' }\n";
   const std::string damped = ", mass_damping = 20";
   const std::vector<Vec3> x =

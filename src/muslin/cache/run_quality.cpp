@@ -40,15 +40,20 @@ std::string crossings_text(const RunQuality& quality) {
                      pairs == 1 ? "crosses" : "cross");
 }
 
+std::string remedy_of_stretch(const RunQuality::Overstretched& shell) {
+  if (!shell.frames.empty() && shell.frames.front() == 0)
+    return "it starts beyond the limit: check `rest_mesh`, or raise `stretch_limit`";
+  if (shell.fell)
+    return "the limit fell, and cloth follows it by its length per second at most, or as far as pins and "
+           "colliders let it: let `stretch_limit` fall more slowly, or less far";
+  return "move pins and colliders that pull it less far apart or more slowly, or raise `stretch_limit`";
+}
+
 std::string overstretched_text(const RunQuality::Overstretched& shell) {
-  const bool from_start = !shell.frames.empty() && shell.frames.front() == 0;
   return fmt::format(
       "body {}: a triangle was up to {:.4g} times as long as at rest, beyond its `stretch_limit` of {:.4g}, "
       "at the end of {}; {}",
-      shell.body, shell.stretch, shell.limit, describe_frames(shell.frames),
-      from_start
-          ? "it starts beyond the limit: check `rest_mesh`, or raise `stretch_limit`"
-          : "move pins and colliders that pull it less far apart or more slowly, or raise `stretch_limit`");
+      shell.body, shell.stretch, shell.limit, describe_frames(shell.frames), remedy_of_stretch(shell));
 }
 
 }  // namespace
@@ -59,10 +64,15 @@ std::string behind_text(const RunQuality& quality) {
 }
 
 void RunQuality::add(const LimitedStretch& row) {
+  auto last =
+      std::find_if(limits.begin(), limits.end(), [&](const Limit& other) { return other.body == row.body; });
+  if (last == limits.end()) last = limits.insert(last, {row.body, row.limit});
+  last->fell = last->fell || row.limit < last->limit;
+  last->limit = row.limit;
   if (!(row.stretch > row.limit + stretch_slack)) return;
   auto shell = std::find_if(overstretched.begin(), overstretched.end(),
                             [&](const Overstretched& other) { return other.body == row.body; });
-  if (shell == overstretched.end()) shell = overstretched.insert(shell, {row.body, {}, 0, 0});
+  if (shell == overstretched.end()) shell = overstretched.insert(shell, {row.body, {}, 0, 0, last->fell});
   shell->frames.push_back(row.frame);
   if (row.stretch - row.limit > shell->stretch - shell->limit)
     shell->stretch = row.stretch, shell->limit = row.limit;

@@ -18,6 +18,13 @@ struct MUSLIN_API RunQuality {
     std::string body;
     std::vector<int> frames;        ///< at whose end it was
     double stretch = 0, limit = 0;  ///< in the frame with the largest excess
+    bool fell = false;              ///< the limit, in a frame before or in the first of these
+  };
+  /// The limit of a shell in the last row.
+  struct Limit {
+    std::string body;
+    double limit = 0;
+    bool fell = false;  ///< in this row or an earlier one
   };
 
   std::int64_t steps = 0, converged_steps = 0;
@@ -29,6 +36,7 @@ struct MUSLIN_API RunQuality {
   std::vector<int> frames_crossing;   ///< at whose end triangles cross
   int crossings_at_end = 0;           ///< pairs of triangles
   std::vector<Overstretched> overstretched;
+  std::vector<Limit> limits;
   int last_frame = 0;
 
   void add(const Diagnostics& row);

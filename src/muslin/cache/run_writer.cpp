@@ -97,7 +97,7 @@ std::vector<std::string> files_of(const Component& body) {
 
 bool has_stretch_limit(const Model& model) {
   return std::any_of(model.bodies.begin(), model.bodies.end(),
-                     [](const Component& body) { return body.stretch_limit().has_value(); });
+                     [](const Component& body) { return body.stretch_limit(0).has_value(); });
 }
 
 /// The open caches of a component: its skin, and its other cached points in their order.
@@ -350,8 +350,7 @@ void RunWriter::Impl::append_rows() {
   if (pins) pins->append(pin_rows(simulation));
   if (attachments) attachments->append(attachment_rows(simulation));
   if (!stretches) return;
-  for (const LimitedStretch& row :
-       limited_stretches(model(), simulation.state().positions, simulation.frame())) {
+  for (const LimitedStretch& row : limited_stretches(model(), simulation.state(), simulation.frame())) {
     stretches->append(stretch_row(row));
     quality.add(row);
   }

@@ -146,8 +146,11 @@ class MUSLIN_API Component {
   /// Returns the largest ratio of an element's length at x to its length at rest; x are the positions of its
   /// vertices.
   virtual double max_stretch(ConstVectors x) const;
-  /// Returns the largest stretch that its material allows, if there is one.
-  virtual std::optional<double> stretch_limit() const { return std::nullopt; }
+  /// Returns the largest stretch that it allows at a time [s], if there is one.
+  virtual std::optional<double> stretch_limit(double at_time) const {
+    (void)at_time;
+    return std::nullopt;
+  }
 
   // Selections and points.
 

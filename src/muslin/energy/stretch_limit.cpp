@@ -16,6 +16,14 @@ namespace {
 constexpr double gravity = 9.81;        // [m/s²]
 constexpr double end_of_barrier = 0.5;  // share of the range from onset to limit
 
+LawConstants<StretchLimitLaw> limit_constants(const ElementSlabs<3>& slabs, std::span<const double> limits,
+                                              std::span<const double> stiffnesses) {
+  return LawConstants<StretchLimitLaw>(slabs, [&](std::size_t t) {
+    require(stiffnesses[t] >= 0, "the stiffness of a stretch limit is negative", "give 0 or more");
+    return StretchLimitLaw::Constants{stiffnesses[t], StretchBarrier(limits[t]).numbers()};
+  });
+}
+
 }  // namespace
 
 StretchBarrier::StretchBarrier(double limit) {
@@ -45,14 +53,11 @@ StretchLimitEnergy::StretchLimitEnergy(const Shell& shell, double limit, double 
 StretchLimitEnergy::StretchLimitEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell,
                                        std::span<const double> limits, std::span<const double> stiffnesses,
                                        std::shared_ptr<const SymmetricPattern> pattern)
-    : Elements(slabs, TriangleStencil(*slabs, shell),
-               LawConstants<StretchLimitLaw>(
-                   *slabs,
-                   [&](std::size_t t) {
-                     require(stiffnesses[t] >= 0, "the stiffness of a stretch limit is negative",
-                             "give 0 or more");
-                     return StretchLimitLaw::Constants{stiffnesses[t], StretchBarrier(limits[t]).numbers()};
-                   }),
+    : Elements(slabs, TriangleStencil(*slabs, shell), limit_constants(*slabs, limits, stiffnesses),
                std::move(pattern)) {}
+
+StretchLimitEnergy::StretchLimitEnergy(const StretchLimitEnergy& other, std::span<const double> limits,
+                                       std::span<const double> stiffnesses)
+    : Elements(other, limit_constants(other.slabs(), limits, stiffnesses)) {}
 
 }  // namespace muslin

@@ -53,6 +53,9 @@ class StretchLimitEnergy : public Elements<TriangleStencil, StretchLimitLaw> {
   /// Gives each triangle its own limit and stiffness, #T.
   StretchLimitEnergy(const Shell& shell, std::span<const double> limits, std::span<const double> stiffnesses,
                      std::shared_ptr<const SymmetricPattern> pattern);
+  /// Has the triangles of another one.
+  StretchLimitEnergy(const StretchLimitEnergy& other, std::span<const double> limits,
+                     std::span<const double> stiffnesses);
 
  private:
   StretchLimitEnergy(std::shared_ptr<const Slabs> slabs, const Shell& shell, std::span<const double> limits,

@@ -308,6 +308,7 @@ schema::Table declared() {
        number("stretch_limit", &ShellMaterial::stretch_limit)
            .range({least_stretch_limit, 10, false})
            .varies(&Sheet::variations, unchanging_shell_forms)
+           .steady("that of the body can")
            .means("largest stretch in any direction, as length over rest length, unless the body has a "
                   "`stretch_limit` of its own"),
        number("mass_damping", &ShellMaterial::mass_damping)

@@ -118,7 +118,7 @@ void warn_of_explicit_steps(Model& model) {
   if (model.scene.solver.integrator != Integrator::symplectic_euler) return;
   const double step = model.scene.time.step();
   for (const Component& body : model.bodies) {
-    if (body.stretch_limit()) {
+    if (body.stretch_limit(0)) {
       model.warnings.push_back(
           fmt::format("body {}: `stretch_limit` makes symplectic_euler unstable where it pulls; take an "
                       "implicit integrator",

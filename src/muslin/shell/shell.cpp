@@ -238,6 +238,16 @@ class ShellBuilder {
   std::vector<Vec3> warps_;     // #T
 };
 
+/// Returns the square of the largest singular value of F.
+double square_of_stretch(const Vec3i& corners, const Mat2& d, ConstVectors x) {
+  const Vec3& x0 = x[static_cast<std::size_t>(corners[0])];
+  const Vec3 e1 = x[static_cast<std::size_t>(corners[1])] - x0;
+  const Vec3 e2 = x[static_cast<std::size_t>(corners[2])] - x0;
+  const Vec3 a = e1 * d(0, 0) + e2 * d(1, 0), b = e1 * d(0, 1) + e2 * d(1, 1);
+  const double half = 0.5 * (a.squaredNorm() - b.squaredNorm()), shear = a.dot(b);
+  return 0.5 * (a.squaredNorm() + b.squaredNorm()) + std::sqrt(half * half + shear * shear);
+}
+
 }  // namespace
 
 Shell build_shell(const Mesh& mesh, const RestShape& rest, const Weave& weave) {
@@ -256,25 +266,21 @@ double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x
   return std::atan2(n1.cross(n2).dot(e.normalized()), n1.dot(n2));
 }
 
+double largest_stretch(const Vec3i& corners, const Mat2& inverse, ConstVectors x) {
+  return std::sqrt(square_of_stretch(corners, inverse, x));
+}
+
 double max_stretch(const Shell& shell, ConstVectors x) {
   struct Largest {
     double square = 0;
     Largest operator+(const Largest& other) const { return {std::max(square, other.square)}; }
   };
   constexpr std::size_t grain = 4096;
-  const auto square_of = [&](std::size_t t) {
-    const Vec3i& v = shell.triangles[t];
-    const Vec3& x0 = x[static_cast<std::size_t>(v[0])];
-    const Vec3 e1 = x[static_cast<std::size_t>(v[1])] - x0, e2 = x[static_cast<std::size_t>(v[2])] - x0;
-    const Mat2& d = shell.inverses[t];
-    const Vec3 a = e1 * d(0, 0) + e2 * d(1, 0), b = e1 * d(0, 1) + e2 * d(1, 1);
-    const double half = 0.5 * (a.squaredNorm() - b.squaredNorm()), shear = a.dot(b);
-    return 0.5 * (a.squaredNorm() + b.squaredNorm()) + std::sqrt(half * half + shear * shear);
-  };
   const Largest largest =
       parallel_sum(shell.triangles.size(), grain, Largest{}, [&](std::size_t begin, std::size_t end) {
         Largest block;
-        for (std::size_t t = begin; t < end; ++t) block.square = std::max(block.square, square_of(t));
+        for (std::size_t t = begin; t < end; ++t)
+          block.square = std::max(block.square, square_of_stretch(shell.triangles[t], shell.inverses[t], x));
         return block;
       });
   return std::sqrt(largest.square);

@@ -63,7 +63,10 @@ MUSLIN_API Shell build_shell(const Mesh& mesh, ConstVectors rest_positions, cons
 /// (x₁−x₀)×(x₂−x₀), −π … π.
 MUSLIN_API double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
 
-/// Returns the largest singular value of F over all triangles: the largest stretch in any direction.
+/// Returns the largest singular value of F of a triangle, given its corners and its matrix of
+/// Shell::inverses: its largest stretch in any direction.
+double largest_stretch(const Vec3i& corners, const Mat2& inverse, ConstVectors x);
+/// Returns the largest stretch of all triangles.
 MUSLIN_API double max_stretch(const Shell& shell, ConstVectors x);
 
 }  // namespace muslin

@@ -11,11 +11,11 @@ double max_stretch(const Model& model, ConstVectors x) {
   return largest;
 }
 
-std::vector<LimitedStretch> limited_stretches(const Model& model, ConstVectors x, int frame) {
+std::vector<LimitedStretch> limited_stretches(const Model& model, const State& state, int frame) {
   std::vector<LimitedStretch> rows;
   for (const Component& body : model.bodies)
-    if (const std::optional<double> limit = body.stretch_limit())
-      rows.push_back({frame, body.max_stretch(model.of(body, x)), *limit, body.name});
+    if (const std::optional<double> limit = body.stretch_limit(state.time))
+      rows.push_back({frame, body.max_stretch(model.of(body, state.positions)), *limit, body.name});
   return rows;
 }
 

@@ -114,11 +114,11 @@ MUSLIN_API double max_stretch(const Model& model, ConstVectors x);
 struct LimitedStretch {
   int frame = 0;
   double stretch = 1;  ///< the largest of a triangle in any direction
-  double limit = 0;    ///< its `stretch_limit`
+  double limit = 0;    ///< its `stretch_limit` at that time
   std::string body;
 };
 
-/// Returns the stretch of each shell with a limit, at x (#V by 3 [m]); `frame` is stored in each.
-MUSLIN_API std::vector<LimitedStretch> limited_stretches(const Model& model, ConstVectors x, int frame);
+/// Returns the stretch of each shell with a limit; `frame` is stored in each.
+MUSLIN_API std::vector<LimitedStretch> limited_stretches(const Model& model, const State& state, int frame);
 
 }  // namespace muslin

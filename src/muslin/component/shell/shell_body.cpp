@@ -87,8 +87,10 @@ std::vector<ShellMaterial> ShellBody::materials_of_triangles(double time) const 
   return materials;
 }
 
-std::optional<double> ShellBody::stretch_limit() const {
-  if (!has_several_fabrics()) return own().stretch_limit;
+std::optional<double> ShellBody::stretch_limit(double at_time) const {
+  if (const auto limit = schema::over_time(own().variations, "stretch_limit", own().stretch_limit))
+    return limit->at(at_time);
+  if (!has_several_fabrics()) return std::nullopt;
   double largest = 0;
   for (const ShellMaterial& at : triangle_materials) {
     if (!at.stretch_limit) return std::nullopt;
@@ -307,7 +309,7 @@ std::string ShellBody::description_json() const {
                     {"start_stretch", muslin::max_stretch(shell, mesh.positions)}};
     if (own().rest == RestSource::uv) json["rest"]["uv_scale"] = uv_scale;
   }
-  if (const auto limit = stretch_limit()) json["stretch_limit"] = *limit;
+  if (const auto limit = stretch_limit(0)) json["stretch_limit"] = *limit;
   json["warp"] = own().warp ? "given" : mesh.corner_uvs.empty() ? "longest side" : "texture";
   json["material"] = settings.material.name;
   if (has_several_fabrics()) json["fabrics"] = fabrics_json(*this);
@@ -337,7 +339,7 @@ std::string ShellBody::description() const {
   for (std::size_t f = 0; f < fabrics.size(); ++f) text += description_of(f);
   if (const double edge = shortest_trusted_edge().length(); edge > 0)
     text += fmt::format("  drape       as the fabric's with edges of up to {:.2g} m\n", edge);
-  if (const auto limit = stretch_limit())
+  if (const auto limit = stretch_limit(0))
     text += fmt::format("  limit       stretched to {:.4g} of its length at most\n", *limit);
   return text;
 }

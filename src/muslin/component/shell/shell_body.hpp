@@ -47,7 +47,7 @@ class ShellBody final : public Component {
   std::vector<int> parts() const override;
   double max_stretch(ConstVectors x) const override { return muslin::max_stretch(shell, x); }
   /// The largest, if all triangles have one.
-  std::optional<double> stretch_limit() const override;
+  std::optional<double> stretch_limit(double at_time) const override;
 
   std::optional<ContactPart> contact_part() const override;
 

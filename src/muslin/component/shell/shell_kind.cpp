@@ -6,6 +6,7 @@
 #include "muslin/component/shell/shell_body_settings.hpp"
 #include "muslin/geometry/inspect.hpp"
 #include "muslin/material/derive_anew.hpp"
+#include "muslin/schema/over_time.hpp"
 
 namespace muslin {
 namespace {
@@ -140,6 +141,7 @@ schema::Table declare_shell() {
                "`elastic`, as they resist tension"),
        schema::number("stretch_limit", &Own::stretch_limit)
            .range({least_stretch_limit, 10, false})
+           .varies(&Own::variations, {.keyframes = true})
            .may_change_on_resume()
            .otherwise("that of the material, or none")
            .means("largest stretch of a triangle in any direction, as length over rest length; 1.05 allows "
@@ -195,12 +197,15 @@ void finish(const TomlTable& table, const std::filesystem::path& folder, BodySet
     schema::copy_variation(own.variations, "rest_scale_warp", "rest_scale_weft");
   }
   const bool given = own.stretch_limit.has_value(), several = !own.fabrics.empty();
+  std::optional<double> least_limit;
+  if (const auto limit = schema::over_time(own.variations, "stretch_limit", own.stretch_limit))
+    least_limit = limit->least();
   const auto complete = [&](Material& material, const std::string& title) {
     if (!material.shell) return;
     ShellMaterial& numbers = *material.shell;
     if (given) schema::forget_variation(numbers.variations, "stretch_limit");
     if (given && several) numbers.stretch_limit = own.stretch_limit;
-    look_at(numbers, given ? own.stretch_limit : largest_stretch_limit(numbers), title, warnings);
+    look_at(numbers, given ? least_limit : largest_stretch_limit(numbers), title, warnings);
   };
   complete(body.material, table.title());
   for (ShellFabric& fabric : own.fabrics)

@@ -10,6 +10,7 @@
 #include "muslin/component/stability_bound.hpp"
 #include "muslin/energy/bending_friction.hpp"
 #include "muslin/energy/element_energy.hpp"
+#include "muslin/energy/keyed_stretch_limit.hpp"
 #include "muslin/energy/measured_membrane.hpp"
 #include "muslin/energy/membrane_energy.hpp"
 #include "muslin/energy/plastic_bending.hpp"
@@ -19,6 +20,7 @@
 #include "muslin/material/keyed_material.hpp"
 #include "muslin/material/measured_sheet.hpp"
 #include "muslin/potential/mass_damping.hpp"
+#include "muslin/schema/over_time.hpp"
 
 namespace muslin {
 namespace {
@@ -43,7 +45,7 @@ class ShellTerms {
       bound_.add(*membrane_on(nullptr, even), 3, greatest(&ShellMaterial::stiffness_damping));
     }
     // The limit has no stiffness at rest, so that the stable step does not know it.
-    if (is_limited()) add("stretch limit", limit_on(pattern));
+    if (is_limited()) add_limit(pattern);
     const auto bending = bending_on(pattern, held, even);
     add_bending(bending, held);
     // Its blocks are those of half the stiffness that bounds it.
@@ -102,24 +104,30 @@ class ShellTerms {
     return std::any_of(body_.triangle_materials.begin(), body_.triangle_materials.end(),
                        [](const ShellMaterial& at) { return at.stretch_limit.has_value(); });
   }
-  std::shared_ptr<const Potential> limit_on(Pattern pattern) const {
-    const double largest = body_.own().stretch_limit.value_or(unlimited);
+  void add_limit(const Pattern& pattern) {
+    const ShellBodySettings& own = body_.own();
+    const auto over_time = schema::over_time(own.variations, "stretch_limit", own.stretch_limit);
+    const double largest = over_time ? over_time->greatest() : unlimited;
     const double strain = 0.5 * (largest * largest - 1);
     double stiffest = std::max(stress_.warp.slope(strain), stress_.weft.slope(strain));
     for (const ShellMaterial& at : body_.triangle_materials)
       stiffest = std::max({stiffest, at.membrane_warp, at.membrane_weft});
-    const auto stiffness = [&](double at) {
-      return stretch_limit_stiffness(stiffest, body_.statistics.mass, body_.shell.mean_edge, at);
+    const auto stiffness = [stiffest, mass = body_.statistics.mass, edge = body_.shell.mean_edge](double at) {
+      return stretch_limit_stiffness(stiffest, mass, edge, at);
     };
+    if (over_time && over_time->least() < largest)
+      return body_.loads.push_back(
+          {"stretch limit", EnergyRole::elastic,
+           std::make_shared<KeyedStretchLimit>(body_.name, body_.shell, *over_time, stiffness, pattern)});
     if (!body_.has_several_fabrics() && find_map(body_.maps, "stretch_limit") == nullptr)
-      return std::make_shared<StretchLimitEnergy>(body_.shell, largest, stiffness(largest),
-                                                  std::move(pattern));
+      return add("stretch limit",
+                 std::make_shared<StretchLimitEnergy>(body_.shell, largest, stiffness(largest), pattern));
     std::vector<double> limits, stiffnesses;
     for (const ShellMaterial& at : materials()) {
       limits.push_back(at.stretch_limit.value_or(unlimited));
       stiffnesses.push_back(at.stretch_limit ? stiffness(*at.stretch_limit) : 0);
     }
-    return std::make_shared<StretchLimitEnergy>(body_.shell, limits, stiffnesses, std::move(pattern));
+    add("stretch limit", std::make_shared<StretchLimitEnergy>(body_.shell, limits, stiffnesses, pattern));
   }
   BucklingRigidity rigidity() const {
     if (body_.own().compression == Compression::elastic) return {};
@@ -226,6 +234,7 @@ class ShellTerms {
 
 void ShellBody::add_terms(std::span<const std::uint8_t> held) {
   schema::Variations variations = own().variations;
+  schema::forget_variation(variations, "stretch_limit");  // a term of its own follows it
   for (const FabricInUse& fabric : fabrics)
     variations.insert(variations.end(), fabric.numbers().variations.begin(),
                       fabric.numbers().variations.end());
