@@ -306,9 +306,9 @@ Attachment = TypedDict(
         "where_to": Optional["Where"],  # selection of vertices of `to`: each vertex is attached to the nearest one
         "at": Optional[Vector],  # a point of `to` at the start, in place of `where_to`: all are attached to this one [m]
         "rest": Optional[Literal["joined", "distance", "cord"]],  # `"joined"`: the points are pulled together · `"distance"`: they keep the distance that they have when it begins · `"cord"`: they come no farther apart than that
-        "stiffness": Optional[float],  # of the whole attachment; each vertex has a share by its mass [N/m]
-        "damping": Optional[float],  # of the whole attachment, against relative motion of the points [N·s/m]
-        "break_force": Optional[float],  # of the whole attachment: a vertex whose force exceeds its share is free from then on [N]
+        "stiffness": Optional[Union[float, "ANumberThatVaries"]],  # of the whole attachment; each vertex has a share by its mass [N/m]
+        "damping": Optional[Union[float, "ANumberThatVaries"]],  # of the whole attachment, against relative motion of the points [N·s/m]
+        "break_force": Optional[Union[float, "ANumberThatVaries"]],  # of the whole attachment: a vertex whose force exceeds its share is free from then on [N]
         "from": Optional[float],  # start time [s]
         "until": Optional[float],  # release time, after `from` [s]
     },
@@ -708,7 +708,7 @@ ShellBody = TypedDict(
         "rest_scale_share": Optional[Union[float, "ANumberThatVaries"]],  # share of the change to `rest_scale_warp` and `rest_scale_weft` that has come about: from 0 to 1 over time the cloth dries
         "warp": Optional[Vector],  # direction of the warp threads in the mesh as modelled
         "compression": Optional[Literal["buckling", "elastic"]],  # how threads resist compression: `buckling`, up to the load at which cells of the mesh fold; `elastic`, as they resist tension
-        "stretch_limit": Optional[float],  # largest stretch of a triangle in any direction, as length over rest length; 1.05 allows 5 %
+        "stretch_limit": Optional[Union[float, "ANumberThatVaries"]],  # largest stretch of a triangle in any direction, as length over rest length; 1.05 allows 5 %
         "fabric": Optional[Sequence["BodyFabric"]],  # fabrics of some faces; the others have `material`
         "material": Required[Union[str, "MaterialOfAShell"]],  # a name (`muslin materials` lists them), the path of a material file (`.toml`), or a table
         "translate": Optional[Vector],  # displacement, applied last [m]
