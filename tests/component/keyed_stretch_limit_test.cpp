@@ -64,8 +64,7 @@ std::string message(const std::string& keys) {
   return "no error";
 }
 
-// Without the rate of following, a step from 1.3 would pull the sheet up within one time step, at some 10
-// m/s.
+// A limit that was 1.05 at once would pull the sheet up within one time step, at several m/s.
 TEST(KeyedStretchLimitRun, StepPullsHungClothUpWithoutAJump) {
   Simulation simulation(
       model_of(limit("{ time = 0, value = 1.4, interpolation = 'step' }, { time = 1, value = 1.05 }")));
