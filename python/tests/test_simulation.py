@@ -274,3 +274,22 @@ def test_pins_and_attachments_report_their_forces():
     assert pin.most >= np.linalg.norm(pin.sum)
     with pytest.raises(muslin.UsageError, match="hand"):
         simulation.pin_force("hands")
+
+
+def test_attachments_and_limits_of_stretch_change_over_time():
+    tables = shell_tables(
+        pin=[],
+        collider=[{"name": "bar", "shape": "box", "size": [1, 1, 1], "center": [0, 4, 0], "contact": False}],
+        attachment=[{"name": "cord", "body": "cloth", "where": {"group": "top"}, "to": "bar", "rest": "cord",
+                     "stiffness": {"keyframes": [{"time": 0, "value": 200}, {"time": 1, "value": 100}]},
+                     "damping": {"keyframes": [{"time": 0, "value": 0}, {"time": 0.1, "value": 5}]}}])
+    tables["body"][0]["stretch_limit"] = {"keyframes": [{"time": 0, "value": 1.3}, {"time": 1, "value": 1.05}]}
+    simulation = muslin.Simulation(muslin.make_scene(tables))
+    for _ in range(72):
+        simulation.advance()
+    weight = 9.8 * simulation.model.body("cloth").mass
+    assert simulation.attachment_force("cord").sum[1] == pytest.approx(weight, rel=0.05)
+    assert simulation.diagnostics.max_stretch < 1.05
+    tables["body"][0]["stretch_limit"]["keyframes"][1]["value"] = 1
+    with pytest.raises(muslin.InputError, match="`stretch_limit` is 1 at 1 s"):
+        muslin.make_scene(tables)
