@@ -202,6 +202,10 @@ TEST(KeyedGravity, StretchesAsADensityThatChanges) {
   advance_to(dense, 72);
   for (std::size_t v = 0; v < wet.state().positions.size(); ++v)
     EXPECT_LT((wet.state().positions[v] - dense.state().positions[v]).norm(), 2e-4) << v;
+  EXPECT_THAT(
+      message("material = { base = 'cotton', areal_density = { keyframes = [{ time = 0, value = 1 }] } }\n"),
+      HasSubstr("`areal_density` cannot vary by keyframes: mass would appear or vanish; give keyframes to a "
+                "gravity force with this `body`"));
 }
 
 }  // namespace

@@ -79,6 +79,7 @@ const schema::Table& lattice_material_table() {
            .unit("kg/m³")
            .range({0, 1e6, true})
            .varies(&Material::variations, unchanging_forms)
+           .steady(steady_density)
            .required_without({"base"})
            .means("mass per volume"),
        spring_modulus("edge_modulus", &Material::edge_modulus,

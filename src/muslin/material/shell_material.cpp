@@ -196,6 +196,7 @@ schema::Table declared() {
            .unit("kg/m²")
            .range({0, 1e6, true})
            .varies(&Sheet::variations, unchanging_shell_forms)
+           .steady(steady_density)
            .required_without({"base"})
            .means("mass per area"),
        number("membrane_warp", &ShellMaterial::membrane_warp)
