@@ -18,6 +18,7 @@ void add_view(CLI::App& program);
 void add_report(CLI::App& program);
 void add_fit(CLI::App& program);
 void add_materials(CLI::App& program);
+void add_sweep(CLI::App& program);
 void add_schema(CLI::App& program);
 void add_verify(CLI::App& program);
 

@@ -71,6 +71,7 @@ from muslin._muslin import (
 )
 from muslin.errors import Error, FileError, InputError, Interrupted, SolverError, UsageError
 from muslin.pickling import register as _register_pickling
+from muslin.sweeps import Sweep, sweep
 from muslin.tables import make_scene, to_toml
 
 __version__ = version()
@@ -106,6 +107,7 @@ __all__ = [
     "Simulation",
     "SolverError",
     "Springs",
+    "Sweep",
     "UsageError",
     "ViewReport",
     "__version__",
@@ -132,6 +134,7 @@ __all__ = [
     "sample_field",
     "scene_types",
     "set_thread_count",
+    "sweep",
     "thicken",
     "thread_count",
     "to_toml",

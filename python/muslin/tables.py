@@ -53,7 +53,7 @@ def _entry_at(text: str, line: int) -> str:
 def to_toml(tables: Mapping[str, Any]) -> str:
     """The text of a scene file with these tables."""
     tables = _tables(tables)
-    lines = [f"{_key(key)} = {_value(value, key)}" for key, value in tables.items() if _is_value(value)]
+    lines = [f"{_key(key)} = {to_value(value, key)}" for key, value in tables.items() if _is_value(value)]
     for key, value in tables.items():
         if isinstance(value, Mapping):
             lines += ["", f"[{_key(key)}]", *_entries(value, key)]
@@ -92,7 +92,7 @@ def _is_value(value: Any) -> bool:
 
 
 def _entries(table: Mapping[str, Any], title: str) -> list[str]:
-    return [f"{_key(key)} = {_value(value, f'{title}.{key}')}" for key, value in table.items() if value is not None]
+    return [f"{_key(key)} = {to_value(value, f'{title}.{key}')}" for key, value in table.items() if value is not None]
 
 
 def _key(key: object) -> str:
@@ -110,7 +110,8 @@ def _escape(c: str) -> str:
     return f"\\u{ord(c):04x}" if ord(c) < 0x10000 else f"\\U{ord(c):08x}"
 
 
-def _value(value: Any, name: str) -> str:
+def to_value(value: Any, name: str) -> str:
+    """The text of a value in TOML; `name` is what errors call it."""
     if hasattr(value, "tolist"):  # numpy's arrays and numbers
         value = value.tolist()
     if isinstance(value, bool):
@@ -123,8 +124,8 @@ def _value(value: Any, name: str) -> str:
     if isinstance(value, str | os.PathLike):
         return _text(os.fspath(value))
     if isinstance(value, Mapping):
-        items = [f"{_key(k)} = {_value(v, f'{name}.{k}')}" for k, v in value.items() if v is not None]
+        items = [f"{_key(k)} = {to_value(v, f'{name}.{k}')}" for k, v in value.items() if v is not None]
         return "{ " + ", ".join(items) + " }" if items else "{}"
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(_value(item, name) for item in value) + "]"
+        return "[" + ", ".join(to_value(item, name) for item in value) + "]"
     raise UsageError(f"`{name}` is a {type(value).__name__}", "use numbers, texts, lists, dictionaries or meshes")

@@ -17,5 +17,6 @@ void bind_run(nanobind::module_& m);
 void bind_picture(nanobind::module_& m);
 void bind_run_report(nanobind::module_& m);
 void bind_fit(nanobind::module_& m);
+void bind_toml(nanobind::module_& m);
 
 }  // namespace muslin::python

@@ -39,4 +39,5 @@ NB_MODULE(_muslin, m) {
   bind_picture(m);
   bind_run_report(m);
   bind_fit(m);
+  bind_toml(m);
 }

@@ -53,7 +53,9 @@ def test_wheel_installs_and_runs(source, sdist, tmp_path):
     with zipfile.ZipFile(tmp_path / name) as wheel:
         names = set(wheel.namelist())
         metadata = wheel.read(f"muslin-{muslin.__version__}.dist-info/METADATA").decode()
-    here = {path.name for path in (source / "python/muslin").glob("*.py")} | {"_muslin.pyi", "py.typed"}
+    package = source / "python/muslin"
+    here = {path.relative_to(package).as_posix() for path in package.rglob("*") if path.suffix in (".py", ".html")}
+    here |= {"_muslin.pyi", "py.typed"}
     module = {n for n in names if n.startswith("muslin/") and n.endswith(".so")}
     assert len(module) == 1
     assert {n for n in names if ".dist-info/" not in n} == {f"muslin/{n}" for n in here} | module
