@@ -4,7 +4,7 @@ import hashlib
 import itertools
 import math
 import pickle
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -126,7 +126,7 @@ def read_description(source: Source, *, limit: int | None = None) -> Description
         sample=points.sample(source, tables["sample"]) if "sample" in tables else None,
         search=_search(source, tables["search"]) if "search" in tables else None,
         pictures=source.truth(tables.get("pictures", True), "pictures"),
-        pages=[source.word(page, f"pages[{i}]", PAGES) for i, page in enumerate(_list(source, "pages"))],
+        pages=[source.word(page, f"pages[{i}]", PAGES) for i, page in enumerate(_list(source, "pages", ["report"]))],
     )
     _check_kinds(description)
     _check_count(description, MOST_RUNS if limit is None else limit)
@@ -134,8 +134,8 @@ def read_description(source: Source, *, limit: int | None = None) -> Description
     return description
 
 
-def _list(source: Source, key: str) -> list[Any]:
-    value = source.tables.get(key, [])
+def _list(source: Source, key: str, default: Sequence[Any] = ()) -> list[Any]:
+    value = source.tables.get(key, list(default))
     if not isinstance(value, list):
         raise source.error(key, f"`{key}` is {described(value)}", "give a list")
     return value

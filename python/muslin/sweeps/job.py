@@ -14,7 +14,7 @@ from muslin.errors import Error, FileError, Interrupted
 from muslin.sweeps.directory import write_atomically
 from muslin.sweeps.outcome import read_outcome
 
-PICTURE_SIZE = (256, 144)
+PICTURE_SIZE = (224, 126)
 WAIT_FOR_LOCK = 120.0
 """Seconds after which a run that another process writes is given up. A lost machine may take a while to be gone."""
 
@@ -101,14 +101,17 @@ def _pictures_and_pages(job: Job) -> list[str]:
     made = []
     try:
         if job.pictures:
-            pictures = _muslin.RunPictures(job.directory, size=PICTURE_SIZE, samples=1)
+            pictures = _muslin.RunPictures(job.directory, size=PICTURE_SIZE, samples=2)
             pictures.write(Path(job.directory) / "picture.png")
             made.append("picture.png")
         run = _muslin.Run(job.directory)
         for page in job.pages:
-            write: Callable[..., object] = {"report": _muslin.write_report, "view": _muslin.write_view}[page]
-            write(run, Path(job.directory) / f"{page}.html")
-            made.append(f"{page}.html")
+            file = Path(job.directory) / f"{page}.html"
+            if page == "report":
+                _muslin.write_report(run, file, json=file.with_suffix(".json"), pictures=False)
+            else:
+                _muslin.write_view(run, file)
+            made.append(file.name)
     except Error:
         pass
     return made

@@ -30,7 +30,7 @@ class Span:
             low, high = int(self.low), int(self.high)
             return min(low + int(share * (high - low + 1)), high)
         if self.logarithmic:
-            value = math.exp(math.log(self.low) + share * (math.log(self.high) - math.log(self.low)))
+            value = self.low * (self.high / self.low) ** share
         else:
             value = self.low + share * (self.high - self.low)
         return min(max(value, self.low), self.high)
