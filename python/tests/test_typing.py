@@ -80,6 +80,8 @@ cloth: muslin.scene_types.ShellBody = {"mesh": mesh, "model": "shell", "material
 wind: muslin.scene_types.WindForce = {"type": "wind", "velocity": [1, 0, 0], "drag": None}
 tables: muslin.scene_types.Scene = {"time": {"duration": 2}, "body": [cloth], "force": [wind]}
 muslin.make_scene(tables)
+made: muslin.Sweep = muslin.sweep(scene="flag.toml", grid={"time.steps_per_frame": [2, 4]}, workers=2)
+best = made.best["largest_stretch"] if made.best is not None else made.column("largest_stretch")
 """
 
 BAD = {
@@ -89,6 +91,7 @@ BAD = {
     "muslin.read_scene(7)": "arg-type",
     "simulation.model.bodies[0].lattice.voxel_count": "union-attr",
     "muslin.Mesh([[0, 0, 0]])": "call-arg",
+    "muslin.sweep('sweep.toml', workers='two')": "arg-type",
     "a: muslin.scene_types.Time = {'duraton': 2}": "typeddict-unknown-key",
     "b: muslin.scene_types.Solver = {'effort': 'exat'}": "typeddict-item",
     "c: muslin.scene_types.WindForce = {'velocity': [1, 0, 0]}": "typeddict-item",

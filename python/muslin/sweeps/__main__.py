@@ -19,7 +19,7 @@ from muslin.tables import to_value
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         known = [word for action in self._actions for word in action.option_strings if word.startswith("--")]
-        wrong = next((word.split("=")[0] for word in message.split() if word.startswith("--")), None)
+        wrong = next((word.split("=")[0].rstrip(":") for word in message.split() if word.startswith("--")), None)
         advice = name_advice(wrong, known) if wrong and wrong not in known else "see muslin sweep --help"
         sys.stderr.write(f"muslin: {message}; {advice}\n")
         sys.exit(2)

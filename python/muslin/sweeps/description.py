@@ -151,9 +151,7 @@ def _scene(source: Source) -> tuple[Scene, dict[str, Mesh]]:
     try:
         return read_scene(path), {}
     except FileError as error:
-        raise type(error)(
-            f"the scene {path} cannot be read: {error.problem}", "correct `scene`", *_place(source, "scene")
-        ) from None
+        raise FileError(f"the scene {path}: {error.problem}", "correct `scene`", *_place(source, "scene")) from None
 
 
 def _place(source: Source, key: str) -> tuple[str, int, int]:
@@ -214,11 +212,11 @@ def _check_count(description: Description, limit: int) -> None:
     if description.sample:
         factors.append(str(description.sample.runs))
     product = f" ({' × '.join(factors)})" if len(factors) > 1 else ""
-    raise description.source.error(
-        "search" if description.search else next(name for name in ("grid", "list", "sample") if name in description.source.tables),
-        f"these are {description.count} runs{product}, more than the limit of {limit}",
-        f"give fewer values, or raise the limit: --limit {description.count}",
-    )
+    source = description.source
+    place = next(name for name in ("search", "grid", "list", "sample") if name in source.tables)
+    problem = f"these are {description.count} runs{product}, more than the limit of {limit}"
+    option = "--limit " if source.file else "limit="
+    raise source.error(place, problem, f"give fewer values, or raise the limit: {option}{description.count}")
 
 
 def _check_scenes(description: Description) -> None:

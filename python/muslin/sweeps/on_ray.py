@@ -3,6 +3,9 @@
 Ray starts a task again when its worker or its node is lost; the task continues the run from its last checkpoint.
 """
 
+import signal
+import socket
+import threading
 import time
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -26,12 +29,16 @@ class RayPool:
             raise UsageError("the package ray is not installed", "pip install muslin[sweep]") from None
         self._ray: Any = ray
         self._began = not ray.is_initialized()
+        handler = signal.getsignal(signal.SIGTERM)
         try:
             if self._began:
+                _knock(address)
                 ray.init(address=None if address == "local" else address, log_to_driver=False)
-        except (ConnectionError, ValueError, RuntimeError) as error:
+        except (OSError, ValueError, RuntimeError) as error:
             remedy = "start one with `ray start --head`, or name its address"
             raise FileError(f"there is no Ray cluster at `{address}`: {error}", remedy) from None
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, handler)  # Ray has set its own, which ends the process at once
         task = ray.remote(num_cpus=threads, max_retries=MOST_LOSSES - 1)(_execute)
         self._submit: Callable[[Job], Any] = lambda job: task.remote(job, threads)
         self._tasks: dict[Any, Job] = {}
@@ -64,6 +71,13 @@ class RayPool:
         self._tasks = {}
         if self._began:
             self._ray.shutdown()
+
+
+def _knock(address: str) -> None:
+    """Raises an OSError if nothing listens at HOST:PORT; Ray would try for minutes."""
+    host, _, port = address.rpartition("://")[2].rpartition(":")
+    if host and port.isdigit():
+        socket.create_connection((host, int(port)), timeout=10).close()
 
 
 def _execute(job: Job, threads: int) -> None:

@@ -23,7 +23,8 @@ def row_of(number: int, point: Point, result: dict[str, Any] | None) -> Row:
         return row | {"status": "missing", "exit_code": None, "message": "", "warnings": None, "frames": None}
     row |= {"status": "finished" if result["exit_code"] == 0 else "failed", "exit_code": result["exit_code"]}
     row |= {"message": result["message"], "warnings": len(result["warnings"]), "frames": result["frames"]}
-    return row | result["values"]
+    row |= result["values"]
+    return row
 
 
 def columns_of(rows: Iterable[Row]) -> list[str]:
