@@ -21,7 +21,7 @@ constexpr const char* script =
     "try:\n"
     "    from muslin.sweeps.__main__ import main\n"
     "except ImportError as error:\n"
-    "    sys.stderr.write(f'muslin: sweeps need the Python package, which {sys.executable} lacks ({error}); '\n"
+    "    sys.stderr.write(f'muslin: sweeps need the Python package, and {sys.executable} says: {error}; '\n"
     "                     'pip install muslin[sweep], or name another Python with MUSLIN_PYTHON\\n')\n"
     "    sys.exit(2)\n"
     "sys.exit(main())\n";

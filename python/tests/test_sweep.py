@@ -37,7 +37,9 @@ def flag_scene(source):
 @pytest.fixture(scope="module")
 def undisturbed(flag_scene, tmp_path_factory):
     """Six runs of eight frames."""
-    return muslin.sweep(scene=flag_scene, frames=8, grid=GRID, directory=tmp_path_factory.mktemp("sweep") / "flag")
+    return muslin.sweep(
+        scene=flag_scene, frames=8, grid=GRID, directory=tmp_path_factory.mktemp("sweep") / "flag"
+    )
 
 
 def cells(directory: Path, without: tuple[str, ...] = ("wall_seconds",)) -> list[list[str]]:
@@ -49,7 +51,9 @@ def cells(directory: Path, without: tuple[str, ...] = ("wall_seconds",)) -> list
 
 
 def test_each_row_is_what_a_run_alone_gives(undisturbed, flag_scene, tmp_path):
-    assert [(row[GRAVITY], row[STEPS]) for row in undisturbed.rows] == [(g, s) for g in GRID[GRAVITY] for s in GRID[STEPS]]
+    assert [(row[GRAVITY], row[STEPS]) for row in undisturbed.rows] == [
+        (g, s) for g in GRID[GRAVITY] for s in GRID[STEPS]
+    ]
     assert undisturbed.column("exit_code") == [0] * 6 and undisturbed.failed == []
     scene = muslin.read_scene(flag_scene, [f"{GRAVITY}=-5.0", f"{STEPS}=4"])
     muslin.run(scene, tmp_path / "alone", frames=8)
@@ -115,7 +119,11 @@ def test_a_run_that_fails_is_a_row(flag_scene, tmp_path):
     made = muslin.sweep(scene=flag_scene, frames=1, list=listed, directory=tmp_path / "sweep")
     assert made.column("status") == ["finished", "failed", "finished"]
     failed = made.rows[1]
-    assert failed["exit_code"] in (3, 4) and "voxel width of 1e-05 m" in failed["message"] and failed["frames"] == 0
+    assert (
+        failed["exit_code"] in (3, 4)
+        and "voxel width of 1e-05 m" in failed["message"]
+        and failed["frames"] == 0
+    )
     assert str(tmp_path) not in (tmp_path / "sweep/table.csv").read_text()
     ended = (tmp_path / "sweep/runs/0002.json").stat().st_mtime_ns
     muslin.sweep(scene=flag_scene, frames=1, list=listed, directory=tmp_path / "sweep")
@@ -182,12 +190,18 @@ def test_a_job_that_always_kills_its_worker_is_given_up(flag_scene, tmp_path):
 def test_continues_what_is_missing(flag_scene, undisturbed, tmp_path):
     stops = iter([False] * 4)
     with pytest.raises(Interrupted):
-        muslin.sweep(scene=flag_scene, frames=8, grid=GRID, directory=tmp_path / "s", cancel=lambda: next(stops, True))
+        muslin.sweep(
+            scene=flag_scene, frames=8, grid=GRID, directory=tmp_path / "s", cancel=lambda: next(stops, True)
+        )
     rows = cells(tmp_path / "s")
     assert len(rows) == 7 and "missing" in {row[3] for row in rows}
     counted = []
     muslin.sweep(
-        scene=flag_scene, frames=8, grid=GRID, directory=tmp_path / "s", progress=lambda *now: counted.append(now)
+        scene=flag_scene,
+        frames=8,
+        grid=GRID,
+        directory=tmp_path / "s",
+        progress=lambda *now: counted.append(now),
     )
     assert counted == [(n, 6) for n in range(1, 7)]
     assert cells(tmp_path / "s") == cells(undisturbed.directory)
@@ -218,10 +232,22 @@ def test_scenes_from_python(tmp_path):
         ('pages = ["reprot"]\n[grid]\ntime.duration = [1]', ":2:10", "did you mean `report`"),
         ("[sample]\nruns = 3\nkeys.time.duration = { from = 2, to = 1 }", ":4:11", "smaller number"),
         ("[sample]\nruns = 3\nkeys.time.duration = { from = 2 }", ":4:11", "has no `to`"),
-        ('[sample]\nruns = 3\nkeys.time.duration = { from = 0, to = 1, scale = "log" }', ":4", "begin above 0"),
+        (
+            '[sample]\nruns = 3\nkeys.time.duration = { from = 0, to = 1, scale = "log" }',
+            ":4",
+            "begin above 0",
+        ),
         ("[sample]\nkeys.time.duration = { from = 1, to = 2 }", ":2:2", "has no `runs`"),
-        ('[sample]\nruns = 3\nmethod = "sobl"\nkeys.time.duration = { from = 1, to = 2 }', ":4:1", "did you mean `sobol`"),
-        ('[search]\nobjective = "error"\nruns = 0\nkeys.time.duration = { from = 1, to = 2 }', ":4:1", "1 or more"),
+        (
+            '[sample]\nruns = 3\nmethod = "sobl"\nkeys.time.duration = { from = 1, to = 2 }',
+            ":4:1",
+            "did you mean `sobol`",
+        ),
+        (
+            '[search]\nobjective = "error"\nruns = 0\nkeys.time.duration = { from = 1, to = 2 }',
+            ":4:1",
+            "1 or more",
+        ),
     ],
 )
 def test_refuses_wrong_descriptions_at_their_place(flag_scene, tmp_path, text, place, words):
@@ -235,7 +261,9 @@ def test_refuses_wrong_descriptions_at_their_place(flag_scene, tmp_path, text, p
 
 def test_refuses_too_many_runs_and_missing_scenes(flag_scene, tmp_path):
     grid = {"time.duration": list(range(1, 41)), STEPS: list(range(1, 31))}
-    with pytest.raises(muslin.InputError, match=r"1200 runs \(40 × 30\), more than the limit of 1000.*limit=1200"):
+    with pytest.raises(
+        muslin.InputError, match=r"1200 runs \(40 × 30\), more than the limit of 1000.*limit=1200"
+    ):
         muslin.sweep(scene=flag_scene, grid=grid, directory=tmp_path / "out")
     assert read_description(from_python({"scene": flag_scene, "grid": grid}), limit=1200).count == 1200
     with pytest.raises(muslin.FileError, match=r"none\.toml"):
@@ -261,7 +289,9 @@ def test_refuses_another_description_by_name(undisturbed, flag_scene, tmp_path):
 
 def test_the_page_needs_nothing_else(flag_scene, tmp_path):
     title = 'a </script> & "b" %DATA%'
-    made = muslin.sweep(scene=flag_scene, title=title, frames=2, grid={STEPS: [2, 3]}, directory=tmp_path / "s")
+    made = muslin.sweep(
+        scene=flag_scene, title=title, frames=2, grid={STEPS: [2, 3]}, directory=tmp_path / "s"
+    )
     page = (made.directory / "index.html").read_text()
     assert not re.search(r"(src|href)=\"?(https?:)?//", page) and "@import" not in page
     found = json.loads(page.split('id="data">', 1)[1].split("</script>", 1)[0])
@@ -286,7 +316,12 @@ def test_jobs_run_anywhere(flag_scene, tmp_path):
 
 def test_a_search_finds_the_least_for_any_number_of_workers(flag_scene, tmp_path):
     pytest.importorskip("optuna", reason="searches need optuna")
-    search = {"objective": "largest_stretch", "runs": 8, "batch": 4, "keys": {GRAVITY: {"from": -20, "to": -1}}}
+    search = {
+        "objective": "largest_stretch",
+        "runs": 8,
+        "batch": 4,
+        "keys": {GRAVITY: {"from": -20, "to": -1}},
+    }
     tables = {"scene": flag_scene, "frames": 3, "search": search, "pictures": False, "pages": []}
     made = muslin.sweep(tables, tmp_path / "a", workers=2)
     assert made.best["largest_stretch"] == min(made.column("largest_stretch"))
@@ -296,10 +331,15 @@ def test_a_search_finds_the_least_for_any_number_of_workers(flag_scene, tmp_path
         (tmp_path / f"b/runs/{name}.json").unlink()
     muslin.sweep(tables, tmp_path / "b", workers=1)
     assert cells(tmp_path / "a") == cells(tmp_path / "b")
-    by_function = search | {"objective": lambda row: -row["largest_stretch"], "direction": "maximize", "runs": 4}
-    assert muslin.sweep(tables | {"search": by_function}, tmp_path / "c").best["run"] == min(
-        made.rows[:4], key=lambda row: row["largest_stretch"]
-    )["run"]
+    by_function = search | {
+        "objective": lambda row: -row["largest_stretch"],
+        "direction": "maximize",
+        "runs": 4,
+    }
+    assert (
+        muslin.sweep(tables | {"search": by_function}, tmp_path / "c").best["run"]
+        == min(made.rows[:4], key=lambda row: row["largest_stretch"])["run"]
+    )
     with pytest.raises(muslin.UsageError, match="did you mean `largest_stretch`"):
         muslin.sweep(tables | {"search": search | {"objective": "larget_stretch"}}, tmp_path / "d")
 
@@ -317,7 +357,9 @@ def command(program: str, *words: object, **environment: str) -> subprocess.Comp
 def small(flag_scene, tmp_path):
     """A file of a sweep of two runs, one of which fails."""
     file = tmp_path / "small.toml"
-    file.write_text(f'scene = "{flag_scene}"\nframes = 1\npictures = false\n[grid]\nbody.flag.voxel_width = [1, 1e-5]\n')
+    file.write_text(
+        f'scene = "{flag_scene}"\nframes = 1\npictures = false\n[grid]\nbody.flag.voxel_width = [1, 1e-5]\n'
+    )
     return file
 
 

@@ -58,15 +58,21 @@ def test_a_node_is_killed_and_nothing_lost(source, cluster, tmp_path):
     killer.join()
     assert hit and len(hit[0]) < 6
     assert made.column("exit_code") == [0] * 6 and made.column("frames") == [96] * 6
-    sessions = [json.loads(file.read_text())["timings"]["sessions"] for file in tmp_path.glob("ray/runs/*/run.json")]
-    assert any(len(run) > 1 and run[-1]["from_frame"] > 0 for run in sessions)  # a run went on from its checkpoint
+    sessions = [
+        json.loads(file.read_text())["timings"]["sessions"] for file in tmp_path.glob("ray/runs/*/run.json")
+    ]
+    assert any(
+        len(run) > 1 and run[-1]["from_frame"] > 0 for run in sessions
+    )  # a run went on from its checkpoint
     muslin.sweep(tables, tmp_path / "alone")
     assert table(tmp_path / "ray") == table(tmp_path / "alone")
 
 
 def test_a_cluster_that_is_not_there(source, tmp_path):
     scene = str(source / "scenes/thesis/2_two_corners.toml")
-    with pytest.raises(muslin.Error, match="no Ray cluster at `127.0.0.1:1`"):
+    with pytest.raises(muslin.Error, match=r"no Ray cluster at `127\.0\.0\.1:1`"):
         muslin.sweep(scene=scene, grid={"time.duration": [1]}, directory=tmp_path / "s", ray="127.0.0.1:1")
     with pytest.raises(muslin.UsageError, match="cluster's CPUs decide"):
-        muslin.sweep(scene=scene, grid={"time.duration": [1]}, directory=tmp_path / "s", ray="local", workers=2)
+        muslin.sweep(
+            scene=scene, grid={"time.duration": [1]}, directory=tmp_path / "s", ray="local", workers=2
+        )

@@ -19,7 +19,9 @@ from muslin.tables import to_value
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         known = [word for action in self._actions for word in action.option_strings if word.startswith("--")]
-        wrong = next((word.split("=")[0].rstrip(":") for word in message.split() if word.startswith("--")), None)
+        wrong = next(
+            (word.split("=")[0].rstrip(":") for word in message.split() if word.startswith("--")), None
+        )
         advice = name_advice(wrong, known) if wrong and wrong not in known else "see muslin sweep --help"
         sys.stderr.write(f"muslin: {message}; {advice}\n")
         sys.exit(2)
@@ -43,7 +45,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--workers", type=_count, help="processes (default: one per core)")
     parser.add_argument("--threads", type=_count, help="threads of each run (default: cores / workers)")
     parser.add_argument(
-        "--ray", nargs="?", const="auto", metavar="ADDRESS", help="run on a Ray cluster (default: the one of RAY_ADDRESS)"
+        "--ray",
+        nargs="?",
+        const="auto",
+        metavar="ADDRESS",
+        help="run on a Ray cluster (default: the one of RAY_ADDRESS)",
     )
     parser.add_argument("--limit", type=_count, help="the most runs allowed (default: 1000)")
     parser.add_argument("--plan", action="store_true", help="list the runs, simulate nothing")
@@ -78,7 +84,9 @@ def _run(words: argparse.Namespace) -> int:
             print(f"{description.count} runs in batches of {description.search.batch}")
             return 0
         for number, point in enumerate(description.points(), start=1):
-            print(f"{number:04d}  " + "  ".join(f"{key}={to_value(value, key)}" for key, value in point.items()))
+            print(
+                f"{number:04d}  " + "  ".join(f"{key}={to_value(value, key)}" for key, value in point.items())
+            )
         return 0
     directory = Path(words.output) if words.output else default_directory(words.SWEEP, description)
     line = ProgressLine(description.count, words.quiet)
@@ -99,9 +107,9 @@ def _run(words: argparse.Namespace) -> int:
     elif not words.quiet:
         print(_text(made, directory))
     if words.strict and made.failed:
-        failed, several = made.failed[0], len(made.failed) > 1
+        failed = made.failed[0]
         sys.stderr.write(
-            f"muslin: {directory}: {len(made.failed)} of {len(made.rows)} runs failed, {'first ' if several else ''}"
+            f"muslin: {directory}: {len(made.failed)} of {len(made.rows)} runs failed, "
             f"run {failed['run']}: {failed['message']}\n"
         )
         return 4
@@ -113,7 +121,11 @@ def _text(made: Sweep, directory: Path) -> str:
     for row in made.failed[:5]:
         text += f"run {row['run']}: exit code {row['exit_code']}: {row['message']}\n"
     if made.best:
-        text += f"best run {made.best['run']}: " + ", ".join(f"{key} = {made.best[key]}" for key in made.keys) + "\n"
+        text += (
+            f"best run {made.best['run']}: "
+            + ", ".join(f"{key} = {made.best[key]}" for key in made.keys)
+            + "\n"
+        )
     return text + "\n".join(str(directory / file.name) for file in made.files)
 
 
@@ -131,7 +143,10 @@ def _summary(made: Sweep) -> dict[str, Any]:
 
 def _finite(row: dict[str, Any]) -> dict[str, Any]:
     """A row as strict JSON has it: null for what is not finite."""
-    return {key: None if isinstance(cell, float) and not math.isfinite(cell) else cell for key, cell in row.items()}
+    return {
+        key: None if isinstance(cell, float) and not math.isfinite(cell) else cell
+        for key, cell in row.items()
+    }
 
 
 if __name__ == "__main__":

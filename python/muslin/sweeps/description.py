@@ -6,7 +6,6 @@ import math
 import pickle
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from muslin._muslin import Mesh, Scene, parse_scene, read_scene, version
@@ -82,21 +81,35 @@ class Description:
 
     def overrides(self, point: Point) -> list[str]:
         """KEY=VALUE of a run."""
-        return [*self.scene.overrides, *self.settings, *(f"{key}={to_value(v, key)}" for key, v in point.items())]
+        return [
+            *self.scene.overrides,
+            *self.settings,
+            *(f"{key}={to_value(v, key)}" for key, v in point.items()),
+        ]
 
     def facts(self) -> dict[str, Any]:
         """All that decides what the runs contain, as JSON has it."""
-        facts: dict[str, Any] = {"muslin": version(), "scene": _hash(self.scene.text.encode()), "frames": self.frames}
+        facts: dict[str, Any] = {
+            "muslin": version(),
+            "scene": _hash(self.scene.text.encode()),
+            "frames": self.frames,
+        }
         facts |= {"set": [*self.scene.overrides, *self.settings], "grid": self.grid, "list": self.listed}
         if self.meshes:
             facts["meshes"] = {path: _hash(pickle.dumps(mesh)) for path, mesh in self.meshes.items()}
         if self.sample:
-            facts["sample"] = {"method": self.sample.method, "runs": self.sample.runs, "seed": self.sample.seed}
+            facts["sample"] = {
+                "method": self.sample.method,
+                "runs": self.sample.runs,
+                "seed": self.sample.seed,
+            }
             facts["sample.keys"] = {key: vars(span) for key, span in self.sample.spans.items()}
         if self.search:
             objective = self.search.objective
             facts["search"] = {
-                "objective": objective if isinstance(objective, str) else f"{objective.__module__}.{objective.__qualname__}",
+                "objective": objective
+                if isinstance(objective, str)
+                else f"{objective.__module__}.{objective.__qualname__}",
                 "maximize": self.search.maximize,
                 "runs": self.search.runs,
                 "seed": self.search.seed,
@@ -126,7 +139,10 @@ def read_description(source: Source, *, limit: int | None = None) -> Description
         sample=points.sample(source, tables["sample"]) if "sample" in tables else None,
         search=_search(source, tables["search"]) if "search" in tables else None,
         pictures=source.truth(tables.get("pictures", True), "pictures"),
-        pages=[source.word(page, f"pages[{i}]", PAGES) for i, page in enumerate(_list(source, "pages", ["report"]))],
+        pages=[
+            source.word(page, f"pages[{i}]", PAGES)
+            for i, page in enumerate(_list(source, "pages", ["report"]))
+        ],
     )
     _check_kinds(description)
     _check_count(description, MOST_RUNS if limit is None else limit)
@@ -151,7 +167,9 @@ def _scene(source: Source) -> tuple[Scene, dict[str, Mesh]]:
     try:
         return read_scene(path), {}
     except FileError as error:
-        raise FileError(f"the scene {path}: {error.problem}", "correct `scene`", *_place(source, "scene")) from None
+        raise FileError(
+            f"the scene {path}: {error.problem}", "correct `scene`", *_place(source, "scene")
+        ) from None
 
 
 def _place(source: Source, key: str) -> tuple[str, int, int]:
@@ -191,11 +209,13 @@ def _check_kinds(description: Description) -> None:
         first = next(iter(lengths))
         if length != lengths[first]:
             problem = f"`list.{key}` has {length} values, `list.{first}` has {lengths[first]}"
-            raise source.error(f"list.{key}", problem, "give the lists equal lengths; [grid] combines all values")
+            raise source.error(
+                f"list.{key}", problem, "give the lists equal lengths; [grid] combines all values"
+            )
     seen: dict[str, str] = {}
     tables = {"list": description.listed, "grid": description.grid}
     if description.sample:
-        tables["sample.keys"] = dict.fromkeys(description.sample.spans, [])
+        tables["sample.keys"] = {key: [] for key in description.sample.spans}
     for name, keys in tables.items():
         for key in keys:
             if key in seen:
@@ -265,7 +285,9 @@ def _placed(description: Description, error: Error, point: Point) -> Error:
         values = tables[name][key]
         if isinstance(values, list) and f"{place}[{values.index(value)}]" in source.places:
             place = f"{place}[{values.index(value)}]"
-        return type(error)(f"`{key}` = {to_value(value, key)}: {error.problem}", error.remedy, *_place(source, place))
+        return type(error)(
+            f"`{key}` = {to_value(value, key)}: {error.problem}", error.remedy, *_place(source, place)
+        )
     return error
 
 

@@ -85,7 +85,9 @@ class SweepDirectory:
             except BlockingIOError:
                 file.close()
                 raise FileError(
-                    "another process is running this sweep", "wait for it or choose another directory with -o", str(self.path)
+                    "another process is running this sweep",
+                    "wait for it or choose another directory with -o",
+                    str(self.path),
                 ) from None
         self.lock = file
 
@@ -110,7 +112,9 @@ def read_json(file: Path) -> Any:
     except OSError as error:
         raise FileError(error.strerror or str(error), "check the path", str(file)) from None
     except ValueError as error:
-        raise InputError(f"this is not JSON: {error}", "delete the file; its run is repeated", str(file)) from None
+        raise InputError(
+            f"this is not JSON: {error}", "delete the file; its run is repeated", str(file)
+        ) from None
 
 
 def write_atomically(file: Path, content: bytes) -> None:
@@ -127,7 +131,9 @@ def _as_read(facts: dict[str, Any]) -> dict[str, Any]:
     try:
         read: dict[str, Any] = json.loads(json.dumps(facts))
     except TypeError as error:
-        raise UsageError(f"a value is none of the scene file: {error}", "use numbers, texts, lists, tables") from None
+        raise UsageError(
+            f"a value is none of the scene file: {error}", "use numbers, texts, lists, tables"
+        ) from None
     return read
 
 

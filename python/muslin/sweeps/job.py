@@ -16,7 +16,7 @@ from muslin.sweeps.outcome import read_outcome
 
 PICTURE_SIZE = (224, 126)
 WAIT_FOR_LOCK = 120.0
-"""Seconds after which a run that another process writes is given up. A lost machine may take a while to be gone."""
+"""Seconds after which a run that another process writes is given up; a lost machine takes a while to go."""
 
 Report = Callable[[int, int], object]
 """Receives the finished frames and the last frame."""
@@ -41,11 +41,13 @@ class Job:
     pages: tuple[str, ...] = ()
 
 
-def execute(job: Job, report: Report | None = None, cancel: Callable[[], bool] | None = None) -> dict[str, Any]:
+def execute(
+    job: Job, report: Report | None = None, cancel: Callable[[], bool] | None = None
+) -> dict[str, Any]:
     """Runs a job, or continues it, and writes its result.
 
-    Errors of the scene, the solver and files are part of the result. Raises ``Interrupted`` if ``cancel`` returns
-    true; the job can be executed again.
+    Errors of the scene, the solver and files are part of the result. Raises ``Interrupted`` if ``cancel``
+    returns true; the job can be executed again.
     """
     result: dict[str, Any] = {"run": job.number, "exit_code": 0, "message": "", "warnings": []}
     try:
@@ -97,7 +99,7 @@ def _meshes(file: str) -> dict[str, _muslin.Mesh]:
 
 
 def _pictures_and_pages(job: Job) -> list[str]:
-    """Writes what the page of the sweep shows of a run, and returns the names. A failure leaves out the rest."""
+    """Writes what the page of the sweep shows of a run; returns the names. A failure leaves out the rest."""
     made = []
     try:
         if job.pictures:

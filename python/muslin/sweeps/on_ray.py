@@ -1,6 +1,7 @@
 """A pool on a Ray cluster whose nodes share the folder of the sweep.
 
-Ray starts a task again when its worker or its node is lost; the task continues the run from its last checkpoint.
+Ray starts a task again when its worker or its node is lost; the task continues the run from its last
+checkpoint.
 """
 
 import signal
@@ -62,12 +63,14 @@ class RayPool:
                 raise Interrupted("stopped", "run the sweep again to continue it")
 
     def close(self) -> None:
-        """Cancels the tasks, whose runs can be continued, and leaves the cluster if this pool has joined it."""
+        """Cancels the tasks, whose runs can be continued; leaves the cluster if this pool has joined it."""
         for task in self._tasks:
             self._ray.cancel(task)
         end = time.monotonic() + GRACE
         if self._tasks:
-            self._ray.wait(list(self._tasks), num_returns=len(self._tasks), timeout=max(end - time.monotonic(), 0))
+            self._ray.wait(
+                list(self._tasks), num_returns=len(self._tasks), timeout=max(end - time.monotonic(), 0)
+            )
         self._tasks = {}
         if self._began:
             self._ray.shutdown()

@@ -11,7 +11,7 @@ POINTS = 48
 
 
 def read_outcome(directory: Path) -> dict[str, Any]:
-    """Diagnostics and probes at the last frame, convergence, extremes and curves; what is missing is left out."""
+    """Diagnostics and probes at the last frame, convergence, extremes, curves; without what is missing."""
     table = _read(directory / "diagnostics.csv")
     outcome: dict[str, Any] = {"frames": max(len(table.get("frame", [])) - 1, 0), "values": {}, "curves": {}}
     values, curves = outcome["values"], outcome["curves"]
@@ -21,7 +21,16 @@ def read_outcome(directory: Path) -> dict[str, Any]:
     for name, column in table.items():
         if name != "frame":
             values[name] = column[-1]
-        if name in ("time", "kinetic", "elastic", "potential", "dissipated", "max_stretch", "min_distance", "error"):
+        if name in (
+            "time",
+            "kinetic",
+            "elastic",
+            "potential",
+            "dissipated",
+            "max_stretch",
+            "min_distance",
+            "error",
+        ):
             curves[name] = [_rounded(column[i]) for i in shown]
     values.pop("wall_ms", None)
     values["wall_seconds"] = math.fsum(table.get("wall_ms", [])) / 1000

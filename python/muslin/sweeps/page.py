@@ -18,7 +18,9 @@ MOST_PICTURES = 24_000_000
 """Bytes of pictures in a page; further ones are shown from the run directories."""
 
 
-def write_page(file: Path, description: Description, rows: list[Row], place: SweepDirectory, best: int | None) -> None:
+def write_page(
+    file: Path, description: Description, rows: list[Row], place: SweepDirectory, best: int | None
+) -> None:
     """Writes the page. It needs no network; with the directory of the sweep beside it, its links work."""
     left = MOST_PICTURES
     runs = []
@@ -34,7 +36,9 @@ def write_page(file: Path, description: Description, rows: list[Row], place: Swe
             if picture.stat().st_size <= left:
                 left -= picture.stat().st_size
                 source = "data:image/png;base64," + base64.b64encode(picture.read_bytes()).decode()
-        pages = [[name, f"{link}/{name}.html"] for name in ("report", "view") if (folder / f"{name}.html").exists()]
+        pages = [
+            [name, f"{link}/{name}.html"] for name in ("report", "view") if (folder / f"{name}.html").exists()
+        ]
         links = [*pages, ["files", f"{link}/"]] if folder.exists() else pages
         runs.append({"picture": source, "links": links, "curves": result["curves"]})
     columns = columns_of(rows)
@@ -49,7 +53,9 @@ def write_page(file: Path, description: Description, rows: list[Row], place: Swe
         else None,
     }
     counts = Counter(row["status"] for row in rows)
-    about = ", ".join(f"{counts[status]} {status}" for status in ("finished", "failed", "missing") if counts[status])
+    about = ", ".join(
+        f"{counts[status]} {status}" for status in ("finished", "failed", "missing") if counts[status]
+    )
     text = (Path(__file__).parent / "page.html").read_text()
     parts = {
         "%TITLE%": html.escape(description.title),

@@ -78,7 +78,9 @@ def spans(source: Source, table: Mapping[str, Any], path: str) -> dict[str, Span
         elif value:
             found |= {joined(key, inner): span for inner, span in spans(source, value, own).items()}
         else:
-            raise source.error(own, f"`{own}` has no values", "write { from = 1, to = 2 } or { choose = [1, 2, 5] }")
+            raise source.error(
+                own, f"`{own}` has no values", "write { from = 1, to = 2 } or { choose = [1, 2, 5] }"
+            )
     return found
 
 
@@ -92,7 +94,9 @@ def _span(source: Source, table: Mapping[str, Any], path: str) -> Span:
             raise source.error(path, f"`{path}` has no `{word}`", "write { from = 1, to = 2 }")
         value = table[word]
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise source.error(f"{path}.{word}", f"`{path}.{word}` is {described(value)}", "give a finite number")
+            raise source.error(
+                f"{path}.{word}", f"`{path}.{word}` is {described(value)}", "give a finite number"
+            )
     low, high = table["from"], table["to"]
     scale = source.word(table.get("scale", "linear"), f"{path}.scale", ["linear", "log"])
     whole = source.truth(table.get("whole", False), f"{path}.whole")
@@ -101,7 +105,9 @@ def _span(source: Source, table: Mapping[str, Any], path: str) -> Span:
     if scale == "log" and low <= 0:
         raise source.error(f"{path}.from", f"a logarithmic scale begins at {low}", "begin above 0")
     if whole and (scale == "log" or low != int(low) or high != int(high)):
-        raise source.error(path, "`whole` needs whole numbers on a linear scale", "give whole `from` and `to`")
+        raise source.error(
+            path, "`whole` needs whole numbers on a linear scale", "give whole `from` and `to`"
+        )
     return Span(float(low), float(high), scale == "log", whole)
 
 
@@ -121,5 +127,7 @@ def keys_of(source: Source, table: Mapping[str, Any], path: str) -> dict[str, Sp
     """The spans in the table `keys`, of which there must be one."""
     found = spans(source, source.table(table.get("keys", {}), f"{path}.keys"), f"{path}.keys")
     if not found:
-        raise source.error(path, f"`{path}` has no `keys`", f"write [{path}.keys] with the scene keys to vary")
+        raise source.error(
+            path, f"`{path}` has no `keys`", f"write [{path}.keys] with the scene keys to vary"
+        )
     return found

@@ -28,7 +28,7 @@ class Pool(Protocol):
     """Executes jobs."""
 
     def run(self, jobs: Iterable[Job], progress: Progress, cancel: Callable[[], bool] | None) -> None:
-        """Executes all jobs. Raises ``Interrupted`` if ``cancel`` returns true; started jobs can be continued."""
+        """Executes all jobs. Raises ``Interrupted`` if ``cancel`` returns true; jobs can be continued."""
 
     def close(self) -> None:
         """Stops what still runs, in a way that can be continued."""
@@ -44,7 +44,7 @@ def cores() -> int:
 
 def give_up(job: Job, exit_code: int, reason: str) -> None:
     """Writes the result of a job whose workers are lost again and again."""
-    message = f"the run was given up after {MOST_LOSSES} lost workers: {reason}; run the sweep again to try once more"
+    message = f"given up after {MOST_LOSSES} lost workers: {reason}; run the sweep again to try once more"
     result = {"run": job.number, "exit_code": exit_code, "message": message, "warnings": [], "frames": 0}
     result |= {"values": {}, "curves": {}, "overrides": job.overrides, "files": []}
     write_result(Path(job.result), result)

@@ -138,8 +138,10 @@ class ProcessPool:
                 number, worker.job = worker.job.number, None
                 progress.done(number)
 
-    def _replace(self, worker: _Worker, queue: deque[Job], losses: dict[int, list[int]], progress: Progress) -> None:
-        """Forgets a lost process, and puts its job back to the front; the next round starts another process."""
+    def _replace(
+        self, worker: _Worker, queue: deque[Job], losses: dict[int, list[int]], progress: Progress
+    ) -> None:
+        """Forgets a lost process, and puts its job back to the front for the next one."""
         assert worker.process.stdout and worker.process.stdin
         self._selector.unregister(worker.process.stdout)
         self._workers.remove(worker)

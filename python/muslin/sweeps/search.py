@@ -1,7 +1,7 @@
 """A search by Optuna: proposes points in batches, from the results of all earlier batches.
 
-A batch does not depend on the number of workers or on which of its runs ends first, so the same description gives the
-same runs, and a search that was stopped goes through the same points again, whose results are there.
+A batch does not depend on the number of workers or on which of its runs ends first, so the same description
+gives the same runs, and a search that was stopped goes through the same points again. Their results are there.
 """
 
 import math
@@ -65,8 +65,12 @@ def objective_of(search: Search, row: Row) -> float | None:
     elif search.objective in row:
         value = row[search.objective]
     else:
-        numbers = [key for key, cell in row.items() if isinstance(cell, int | float) and not isinstance(cell, bool)]
-        raise UsageError(f"the table has no column `{search.objective}`", name_advice(search.objective, numbers))
+        numbers = [
+            key for key, cell in row.items() if isinstance(cell, int | float) and not isinstance(cell, bool)
+        ]
+        raise UsageError(
+            f"the table has no column `{search.objective}`", name_advice(search.objective, numbers)
+        )
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise UsageError(f"the objective of run {row['run']} is {value!r}", "let it be a number")
     return float(value) if math.isfinite(value) else None

@@ -10,7 +10,9 @@ import muslin._muslin
 from muslin.errors import InputError, UsageError
 
 # Private functions of the engine, which its stub leaves out.
-_read_toml: Callable[[Path], tuple[dict[str, Any], dict[str, tuple[int, int]]]] = getattr(muslin._muslin, "_read_toml")
+_read_toml: Callable[[Path], tuple[dict[str, Any], dict[str, tuple[int, int]]]] = getattr(
+    muslin._muslin, "_read_toml"
+)
 name_advice: Callable[[str, list[str]], str] = getattr(muslin._muslin, "_name_advice")
 
 
@@ -89,7 +91,9 @@ def read_file(file: str | os.PathLike[str]) -> Source:
 
 def from_python(tables: Mapping[str, Any], folder: str | os.PathLike[str] = ".") -> Source:
     """Tables from Python, numpy's arrays and numbers converted to lists and numbers."""
-    return Source({key: _plain(value, key) for key, value in tables.items() if value is not None}, Path(folder))
+    return Source(
+        {key: _plain(value, key) for key, value in tables.items() if value is not None}, Path(folder)
+    )
 
 
 def joined(path: str, key: str) -> str:
@@ -99,7 +103,14 @@ def joined(path: str, key: str) -> str:
 
 def described(value: Any) -> str:
     """The kind of a value, in words."""
-    kinds = {bool: "true or false", int: "a number", float: "a number", str: "a text", list: "a list", dict: "a table"}
+    kinds = {
+        bool: "true or false",
+        int: "a number",
+        float: "a number",
+        str: "a text",
+        list: "a list",
+        dict: "a table",
+    }
     return kinds.get(type(value), f"a {type(value).__name__}")
 
 
@@ -109,7 +120,9 @@ def _plain(value: Any, path: str) -> Any:
     if isinstance(value, Mapping):
         for key in value:
             if not isinstance(key, str):
-                raise UsageError(f"the key {key!r} in `{path}` is not a text", "use the keys of the scene file")
+                raise UsageError(
+                    f"the key {key!r} in `{path}` is not a text", "use the keys of the scene file"
+                )
         return {key: _plain(item, joined(path, key)) for key, item in value.items() if item is not None}
     if isinstance(value, list | tuple | range):
         return [_plain(item, f"{path}[{i}]") for i, item in enumerate(value)]

@@ -1,4 +1,4 @@
-"""``muslin.sweep``: executes the runs of a description that are missing, and writes the table and the page."""
+"""``muslin.sweep``: executes the missing runs of a description, and writes the table and the page."""
 
 import os
 import time
@@ -73,10 +73,11 @@ def sweep(
 
     ``muslin.sweep(scene="flag.toml", grid={"force.wind.velocity.0": [1, 2, 4]}, directory="out/wind")``
 
-    description: a file, or its tables, which may also be given as keywords; ``scene`` may be a ``muslin.Scene``, and
-    the objective of a search a function of a row. workers: processes (default: one per core); threads: of each
-    (default: cores / workers). ray: the address of a Ray cluster, "auto" or "local", in place of processes. limit: the
-    most runs allowed (default: 1000). progress(done, total) is called after each run.
+    description: a file, or its tables, which may also be given as keywords; ``scene`` may be a
+    ``muslin.Scene``, and the objective of a search a function of a row. workers: processes (default: one per
+    core); threads: of each (default: cores / workers). ray: the address of a Ray cluster, "auto" or "local", in
+    place of processes. limit: the most runs allowed (default: 1000). progress(done, total) is called after each
+    run.
 
     A directory with this sweep is continued; after Interrupted or KeyboardInterrupt too.
     """
@@ -87,12 +88,17 @@ def sweep(
 
 
 def describe(
-    description: str | os.PathLike[str] | Mapping[str, Any] | None, more: Mapping[str, Any], *, limit: int | None = None
+    description: str | os.PathLike[str] | Mapping[str, Any] | None,
+    more: Mapping[str, Any],
+    *,
+    limit: int | None = None,
 ) -> Description:
     """The checked description of a file, or of tables and keywords."""
     if isinstance(description, str | os.PathLike):
         if more:
-            raise UsageError(f"`{next(iter(more))}` is given besides a file", "write it into the file, or give tables only")
+            raise UsageError(
+                f"`{next(iter(more))}` is given besides a file", "write it into the file, or give tables only"
+            )
         return read_description(read_file(description), limit=limit)
     if description is not None and not isinstance(description, Mapping):
         raise UsageError(f"the description is a {type(description).__name__}", "give a file or a dictionary")
@@ -106,11 +112,14 @@ def default_directory(description: object, found: Description) -> Path:
 
 
 def jobs(
-    description: str | os.PathLike[str] | Mapping[str, Any], directory: str | os.PathLike[str], *, limit: int | None = None
+    description: str | os.PathLike[str] | Mapping[str, Any],
+    directory: str | os.PathLike[str],
+    *,
+    limit: int | None = None,
 ) -> list[Job]:
-    """The runs that are missing, to be executed by ``muslin.sweeps.execute`` anywhere, as by submitit on Slurm.
+    """The missing runs, to be executed by ``muslin.sweeps.execute`` anywhere, as by submitit on Slurm.
 
-    Begins the sweep in the directory. ``muslin.sweep`` with the same description then writes the table and the page.
+    Begins the sweep in the directory. ``muslin.sweep`` with the same description then writes table and page.
     """
     found = describe(description, {}, limit=limit)
     if found.search:
@@ -239,7 +248,7 @@ def _run_search(session: _Session, proposer: Any, pool: Pool, cancel: Callable[[
             if kept and kept["overrides"] != session.description.overrides(session.points[number - 1]):
                 raise InputError(
                     "the search proposes other values for this run than when it began",
-                    "use the version of optuna and the objective of then, or choose another directory with -o",
+                    "use the optuna and the objective of then, or choose another directory with -o",
                     str(session.place.result_file(number)),
                 )
         session.execute(pool, cancel, first)
@@ -279,7 +288,9 @@ def _pool(
 ) -> Pool:
     if ray is not None:
         if workers is not None:
-            raise UsageError("workers are given for a Ray cluster", "leave them out; the cluster's CPUs decide")
+            raise UsageError(
+                "workers are given for a Ray cluster", "leave them out; the cluster's CPUs decide"
+            )
         from muslin.sweeps.on_ray import RayPool
 
         return RayPool(ray, threads or 1)

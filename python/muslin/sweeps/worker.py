@@ -1,7 +1,7 @@
 """A worker process of a sweep: ``python -m muslin.sweeps.worker THREADS``.
 
-Reads jobs as lines of JSON from standard input, and writes the lines "ready", "frame N LAST" and "done" to standard
-output. When standard input ends, the current run stops in a way that can be continued.
+Reads jobs as lines of JSON from standard input, and writes the lines "ready", "frame N LAST" and "done" to
+standard output. When standard input ends, the current run stops in a way that can be continued.
 """
 
 import json
