@@ -33,7 +33,7 @@ def test_houdini_reads_the_cache(source, tmp_path, monkeypatch):
 
 
 def test_pages_link_to_what_is_there(source):
-    for name in ("python.md", "maya.md", "houdini.md"):
+    for name in ("python.md", "sweep.md", "maya.md", "houdini.md"):
         page = source / "docs/guide" / name
         for target in re.findall(r"\]\(([^)#:]+)", page.read_text()):
             assert (page.parent / target).exists(), (name, target)

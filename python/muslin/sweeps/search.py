@@ -1,7 +1,7 @@
 """A search by Optuna: proposes points in batches, from the results of all earlier batches.
 
 A batch does not depend on the number of workers or on which of its runs ends first, so the same description
-gives the same runs, and a search that was stopped goes through the same points again. Their results are there.
+gives the same runs, and a search that was stopped goes through the same points again with the results it has.
 """
 
 import math

@@ -75,9 +75,9 @@ def sweep(
 
     description: a file, or its tables, which may also be given as keywords; ``scene`` may be a
     ``muslin.Scene``, and the objective of a search a function of a row. workers: processes (default: one per
-    core); threads: of each (default: cores / workers). ray: the address of a Ray cluster, "auto" or "local", in
-    place of processes. limit: the most runs allowed (default: 1000). progress(done, total) is called after each
-    run.
+    core); threads: of each (default: cores / workers). ray: the address of a Ray cluster, "auto" or "local",
+    in place of processes. limit: the most runs allowed (default: 1000). progress(done, total) is called after
+    each run.
 
     A directory with this sweep is continued; after Interrupted or KeyboardInterrupt too.
     """
