@@ -105,11 +105,8 @@ class Description:
             }
             facts["sample.keys"] = {key: vars(span) for key, span in self.sample.spans.items()}
         if self.search:
-            objective = self.search.objective
             facts["search"] = {
-                "objective": objective
-                if isinstance(objective, str)
-                else f"{objective.__module__}.{objective.__qualname__}",
+                "objective": _name(self.search.objective),
                 "maximize": self.search.maximize,
                 "runs": self.search.runs,
                 "seed": self.search.seed,
@@ -289,6 +286,14 @@ def _placed(description: Description, error: Error, point: Point) -> Error:
             f"`{key}` = {to_value(value, key)}: {error.problem}", error.remedy, *_place(source, place)
         )
     return error
+
+
+def _name(objective: str | Callable[[Row], float]) -> str:
+    return (
+        objective
+        if isinstance(objective, str)
+        else getattr(objective, "__qualname__", type(objective).__name__)
+    )
 
 
 def _hash(data: bytes) -> str:

@@ -14,7 +14,7 @@ from muslin.errors import Error, FileError, Interrupted
 from muslin.sweeps.directory import write_atomically
 from muslin.sweeps.outcome import read_outcome
 
-PICTURE_SIZE = (224, 126)
+PICTURE_SIZE = (192, 108)
 WAIT_FOR_LOCK = 120.0
 """Seconds after which a run that another process writes is given up; a lost machine takes a while to go."""
 
@@ -50,6 +50,7 @@ def execute(
     returns true; the job can be executed again.
     """
     result: dict[str, Any] = {"run": job.number, "exit_code": 0, "message": "", "warnings": []}
+    begin = time.monotonic()
     try:
         result["warnings"] = _run(job, report, cancel).warnings
     except Interrupted:
@@ -57,7 +58,7 @@ def execute(
     except Error as error:
         sweep = f"{Path(job.directory).parent.parent}/"
         result |= {"exit_code": error.exit_code, "message": str(error).replace(sweep, "")}
-    result["overrides"] = job.overrides
+    result |= {"overrides": job.overrides, "seconds": time.monotonic() - begin}
     result |= read_outcome(Path(job.directory))
     result["files"] = _pictures_and_pages(job) if result["frames"] > 0 else []
     write_result(Path(job.result), result)

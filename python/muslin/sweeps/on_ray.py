@@ -56,7 +56,7 @@ class RayPool:
                     self._ray.get(task)
                 except errors.TaskCancelledError:
                     raise Interrupted("a task was cancelled", "run the sweep again to continue it") from None
-                except (errors.WorkerCrashedError, errors.NodeDiedError, errors.OutOfMemoryError) as error:
+                except errors.RayError as error:
                     give_up(job, 128, str(error).split("\n")[0])
                 progress.done(job.number)
             if cancel and cancel():

@@ -5,6 +5,7 @@ gives the same runs, and a search that was stopped goes through the same points 
 """
 
 import math
+import numbers
 from typing import Any
 
 from muslin.errors import UsageError
@@ -65,13 +66,13 @@ def objective_of(search: Search, row: Row) -> float | None:
     elif search.objective in row:
         value = row[search.objective]
     else:
-        numbers = [
+        named = [
             key for key, cell in row.items() if isinstance(cell, int | float) and not isinstance(cell, bool)
         ]
         raise UsageError(
-            f"the table has no column `{search.objective}`", name_advice(search.objective, numbers)
+            f"the table has no column `{search.objective}`", name_advice(search.objective, named)
         )
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise UsageError(f"the objective of run {row['run']} is {value!r}", "let it be a number")
     return float(value) if math.isfinite(value) else None
 
