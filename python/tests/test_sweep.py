@@ -5,6 +5,7 @@ import json
 import os
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -302,6 +303,26 @@ def test_the_page_needs_nothing_else(flag_scene, tmp_path):
     for _, link in run["links"]:
         assert (made.directory / link).exists()
     assert page.count("</script>") == 2 and "&lt;/script&gt;" in page
+
+
+@pytest.mark.skipif(not shutil.which("chromium"), reason="Chromium is not installed: tools/setup --tests")
+def test_the_page_shows_and_filters_runs(undisturbed, tmp_path):
+    """In a browser: all runs have card, picture, curve and dot; those of a value that is pressed are hidden."""
+    script = """
+      const count = (what) => document.querySelectorAll(what).length;
+      const found = [['.card', '.card img', '.line', '.dot'].map(count)];
+      document.querySelector('#filters button').click();
+      found.push([count('.card'), document.getElementById('shown').textContent]);
+      document.getElementById('as-table').click();
+      found.push(count('tbody tr'));
+      document.body.replaceChildren(JSON.stringify(found));
+    """
+    page = (undisturbed.directory / "index.html").read_text()
+    (tmp_path / "page.html").write_text(page.replace("</body>", f"<script>{script}</script></body>"))
+    words = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path}/browser"]
+    words += ["--dump-dom", f"file://{tmp_path}/page.html"]
+    seen = subprocess.run(words, capture_output=True, text=True, timeout=60).stdout
+    assert json.loads(seen.split("<body>")[1].split("</body>")[0]) == [[6, 6, 6, 6], [4, "4 shown"], 4]
 
 
 def test_jobs_run_anywhere(flag_scene, tmp_path):
