@@ -34,7 +34,8 @@ class RayPool:
         try:
             if self._began:
                 _knock(address)
-                ray.init(address=None if address == "local" else address, log_to_driver=False)
+                cluster = None if address == "local" else address
+                ray.init(cluster, log_to_driver=False, logging_level="WARNING")
         except (OSError, ValueError, RuntimeError) as error:
             remedy = "start one with `ray start --head`, or name its address"
             raise FileError(f"there is no Ray cluster at `{address}`: {error}", remedy) from None
