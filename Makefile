@@ -2,7 +2,7 @@
 BUILD := build/release
 JOBS ?= $(shell nproc)
 
-.PHONY: build demo test test-hosts blender-addon setup setup-tests python-env clean pictures reference build-time asan tsan fuzz tidy format
+.PHONY: build demo test test-hosts blender-addon setup setup-tests python-env clean pictures gallery reference site release build-time asan tsan fuzz tidy format
 .DEFAULT_GOAL := build
 
 setup:            ## installs the Debian packages muslin builds on, if any is missing
@@ -42,11 +42,24 @@ test-hosts: build ## the Blender add-on as an extension of 4.2, USD and Alembic:
 reference: $(BUILD)/build.ninja   ## pages made from the public headers, in build/release/reference/html; needs doxygen
 	cmake --build $(BUILD) --target reference
 
+site: setup       ## the documentation with search, in build/site
+	@tools/setup --site
+	@tools/python_env build/site-env docs/site/requirements.txt
+	cmake --preset release $(if $(CI),-DMUSLIN_WERROR=ON)
+	cmake --build $(BUILD) --target reference
+	rm -rf build/site
+	build/site-env/bin/sphinx-build -q -E -n -W --keep-going -c docs/site -d build/site-pages \
+	  -D muslin_reference=$(BUILD)/reference . build/site
+	@echo "open build/site/index.html"
+
 build-time:       ## the processor time from a bare checkout to the program
 	tools/build_time
 
 blender-addon:    ## out/muslin-blender-VERSION.zip, for Blender 3.4 and later
 	blender/package
+
+release: build    ## what a release holds, in out/release
+	tools/release $(BUILD)/muslin
 
 FUZZ_SECONDS ?= 20
 
@@ -61,8 +74,11 @@ tidy:             ## clang-tidy over the lines that have changed since TIDY_SINC
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
 
-pictures: build setup-tests   ## the pictures of the README; `tools/make_pictures --movies` films every scene
+pictures: build setup-tests   ## the pictures of the README and the guides
 	tools/make_pictures $(BUILD)/muslin
+
+gallery: build    ## docs/gallery.md and the pictures that it lacks; `tools/gallery --film SCENE` makes movies
+	tools/gallery --draw
 
 clean:
 	rm -rf build out

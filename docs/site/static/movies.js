@@ -1,0 +1,11 @@
+// A picture that links to a movie becomes a player with the picture as its poster.
+document.addEventListener("DOMContentLoaded", () => {
+  for (const link of document.querySelectorAll('a[href$=".mp4"]')) {
+    const picture = link.querySelector("img");
+    if (!picture) continue;
+    const movie = document.createElement("video");
+    Object.assign(movie, { src: link.href, poster: picture.src, title: picture.alt, controls: true, loop: true });
+    Object.assign(movie, { muted: true, playsInline: true, preload: "none", width: 480, height: 270 });
+    link.replaceWith(movie);
+  }
+});
