@@ -15,9 +15,13 @@ version = release = re.search(r"project\(muslin VERSION ([0-9.]+)", (ROOT / "CMa
 # The sources are the Markdown files where they lie, so that relative links hold here and on a forge.
 extensions = ["myst_parser", "sphinx_copybutton", "site_pages"]
 root_doc = "docs/index"
-include_patterns = ["docs/*.md", "docs/*/*.md", "tests/README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"]
+include_patterns = [
+    "docs/*.md", "docs/*/*.md", "tests/README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md",
+]
 exclude_patterns = ["build", "out", "**/node_modules"]
 myst_heading_anchors = 6
+
+highlight_language = "none"  # of code whose language is not named
 
 html_theme = "furo"
 html_title = f"muslin {release}"
@@ -26,4 +30,5 @@ html_css_files = ["site.css"]
 html_js_files = ["movies.js"]
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False
 copybutton_prompt_text = "$ "

@@ -67,9 +67,12 @@ def add_names(app: Sphinx, doctree: nodes.document) -> None:
     paragraph += nodes.Text(" have a search of their own, by name.")
     section += paragraph
     entries = nodes.bullet_list()
-    for path, page, names in names_of_headers(Path(app.config.muslin_reference, "tags.xml")):
+    headers = names_of_headers(Path(app.config.muslin_reference, "tags.xml"))
+    if not headers:
+        raise ExtensionError("the reference has no headers")
+    for path, page, names in headers:
         line = nodes.paragraph()
-        line += [link(path, page), nodes.Text(": ")]
+        line += [link(path, page)] + ([nodes.Text(": ")] if names else [])
         for number, (name, target) in enumerate(names):
             line += ([nodes.Text(", ")] if number else []) + [link(name, target)]
         entries += nodes.list_item("", line)
