@@ -58,7 +58,7 @@ build-time:       ## the processor time from a bare checkout to the program
 blender-addon:    ## out/muslin-blender-VERSION.zip, for Blender 3.4 and later
 	blender/package
 
-release: build    ## what a release holds, in out/release
+release: build    ## the files of a release, in out/release
 	tools/release $(BUILD)/muslin
 
 FUZZ_SECONDS ?= 20

@@ -1,4 +1,4 @@
-"""What the site adds to the Markdown files: navigation, the names of the C++ interface, and a check of all links."""
+"""Adds to the Markdown files navigation, the names of the C++ interface, and a check of all links."""
 
 import posixpath
 import re
@@ -18,15 +18,16 @@ REFERENCE = "reference"
 
 
 def with_navigation(text: str) -> str:
-    """The index with a hidden table of contents for each `##` section: the links of its list, in their order."""
+    """The index with a hidden table of contents for each `##` section: the links of its list, in order."""
     parts = []
     for section in re.split(r"^(?=## )", text, flags=re.M):
         parts.append(section)
         links = re.findall(r"^- \[([^\]]+)\]\(([^)#]+)\.md\)", section, flags=re.M)
         if section.startswith("## ") and links:
             caption = section.split("\n")[0].removeprefix("## ")
-            pages = (f"{title} </{posixpath.normpath(posixpath.join('docs', page))}>" for title, page in links)
-            parts.append("\n".join(["```{toctree}", ":hidden:", f":caption: {caption}", "", *pages, "```", "", ""]))
+            pages = [f"{title} </{posixpath.normpath(f'docs/{page}')}>" for title, page in links]
+            lines = ["```{toctree}", ":hidden:", f":caption: {caption}", "", *pages, "```", "", ""]
+            parts.append("\n".join(lines))
     return "".join(parts)
 
 
@@ -36,9 +37,10 @@ def add_navigation(app: Sphinx, page: str, source: list[str]) -> None:
 
 
 def names_of_headers(tags: Path) -> list[tuple[str, str, list[tuple[str, str]]]]:
-    """For each header its path, its page, and the names declared in it with their pages; from doxygen's tag file."""
+    """For each header its path, its page and the names that it declares with their pages, by doxygen's tags."""
     compounds = ElementTree.parse(tags).getroot().findall("compound")
-    pages = {c.findtext("name"): c.findtext("filename") for c in compounds if c.get("kind") in ("class", "struct")}
+    types = [compound for compound in compounds if compound.get("kind") in ("class", "struct")]
+    pages = {compound.findtext("name"): compound.findtext("filename") for compound in types}
     headers = []
     for file in (c for c in compounds if c.get("kind") == "file" and c.findtext("name", "").endswith(".hpp")):
         names = {name: pages[name] for name in (c.text or "" for c in file.findall("class")) if name in pages}

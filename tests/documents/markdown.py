@@ -31,7 +31,7 @@ def links(text: str) -> list[str]:
 
 
 def anchors(text: str) -> set[str]:
-    """The anchors of the headings: small letters, hyphens for spaces, no punctuation, a number for repeated ones."""
+    """Anchors of the headings: small letters, hyphens for spaces, no punctuation, a number if repeated."""
     found: set[str] = set()
     for heading in re.findall(r"^#{1,6} +(.+?)\s*#*$", prose(text), flags=re.M):
         plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
@@ -62,4 +62,5 @@ def broken_links(root: Path = ROOT) -> list[str]:
 
 def navigation(index: str) -> list[str]:
     """Pages that the lists of docs/index.md name, in their order, relative to docs/."""
-    return [os.path.normpath(page) for page in re.findall(r"^- \[[^\]]+\]\(([^)#]+\.md)\)", index, flags=re.M)]
+    listed = re.findall(r"^- \[[^\]]+\]\(([^)#]+\.md)\)", index, flags=re.M)
+    return [os.path.normpath(page) for page in listed]

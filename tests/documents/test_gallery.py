@@ -32,13 +32,16 @@ class Gallery(unittest.TestCase):
 
     def test_every_scene_has_its_picture(self) -> None:
         pictures = {picture.stem for picture in (ROOT / "docs/pictures/gallery").glob("*.jpg")}
-        self.assertEqual(pictures, {gallery.name_of(scene) for scene in self.scenes}, "run tools/gallery --draw")
+        names = {gallery.name_of(scene) for scene in self.scenes}
+        self.assertEqual(pictures, names, "run tools/gallery --draw")
 
     def test_page_follows_from_the_list(self) -> None:
-        self.assertEqual((ROOT / "docs/gallery.md").read_text(), gallery.page(self.groups), "run tools/gallery")
+        page = (ROOT / "docs/gallery.md").read_text()
+        self.assertEqual(page, gallery.page(self.groups), "run tools/gallery")
 
     def test_a_movie_is_linked_where_there_is_one(self) -> None:
-        page = gallery.page({"Contact": {"contact/funnel": {"shows": "a"}, "contact/no_movie": {"shows": "b"}}})
+        scenes = {"contact/funnel": {"shows": "a"}, "contact/no_movie": {"shows": "b"}}
+        page = gallery.page({"Contact": scenes})
         self.assertIn("[![funnel](pictures/gallery/funnel.jpg)](movies/funnel.mp4)", page)
         self.assertIn("| ![no_movie](pictures/gallery/no_movie.jpg) |", page)
 

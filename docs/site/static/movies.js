@@ -4,8 +4,8 @@ document.addEventListener("DOMContentLoaded", () => {
     const picture = link.querySelector("img");
     if (!picture) continue;
     const movie = document.createElement("video");
-    Object.assign(movie, { src: link.href, poster: picture.src, title: picture.alt, controls: true, loop: true });
-    Object.assign(movie, { muted: true, playsInline: true, preload: "none", width: 480, height: 270 });
+    Object.assign(movie, { src: link.href, poster: picture.src, title: picture.alt, width: 480, height: 270 });
+    Object.assign(movie, { controls: true, loop: true, playsInline: true, preload: "none" });
     link.replaceWith(movie);
   }
 });
