@@ -135,6 +135,38 @@ TEST_P(ContactPotentialOf, TakesOverTheFrictionOfAnother) {
   EXPECT_EQ(kept.parts(scene.q).normal, anew.parts(scene.q).normal);
 }
 
+TEST_P(ContactPotentialOf, HasTheTangentOfFrictionThatSlides) {
+  // Without friction the gradient of contact is the same: the difference is that of friction.
+  Scene scene(GetParam());
+  const double stick = 1e-9;
+  const ContactPotential rough = scene.potential(0.5, stick), smooth = scene.potential(0, stick);
+  std::vector<Vec3> x(scene.surface->point_count());
+  scene.map->apply(scene.q, x);
+  ContactCandidates candidates(scene.surface, x, scene.range);
+  candidates.update(x, x, 0.002);
+  const ContactPotential tangent(test::distances_at(candidates, x), scene.map, scene.q, rough,
+                                 SlidingStiffness::tangent);
+  for (std::uint32_t seed = 1; seed < 4; ++seed) {
+    const std::vector<Vec3> d = test::random_vectors(scene.q.size(), 1, seed);
+    const double h = 1e-8;
+    const auto slope = [&](const Potential& w) {
+      return test::sum(test::gradient(w, test::sum(scene.q, h, d)), -1,
+                       test::gradient(w, test::sum(scene.q, -h, d)));
+    };
+    const auto product = [&](const Potential& w) { return test::hessian_product(w, scene.q, d); };
+    const std::vector<Vec3> expected = test::sum(slope(rough), -1, slope(smooth));
+    const std::vector<Vec3> exact = test::sum(product(tangent), -1, product(smooth));
+    const std::vector<Vec3> secant = test::sum(product(rough), -1, product(smooth));
+    const double size = test::norm(expected) / (2 * h);
+    EXPECT_GT(size, 0);
+    EXPECT_LT(test::norm(test::sum(exact, -1 / (2 * h), expected)), 1e-4 * size);
+    EXPECT_GT(test::norm(test::sum(secant, -1 / (2 * h), expected)), 0.1 * size);
+    EXPECT_GE(test::inner(d, exact), 0);
+    EXPECT_LE(test::inner(d, exact), test::inner(d, secant));
+  }
+  EXPECT_EQ(test::gradient(tangent, scene.q), test::gradient(rough, scene.q));
+}
+
 TEST_P(ContactPotentialOf, HasTheGradientOfItsValue) {
   const Scene scene(GetParam());
   for (const double friction : {0.0, 0.5}) {

@@ -121,6 +121,7 @@ frame_rate = 60
 steps_per_frame = 4
 [solver]
 tolerance = 1e-9
+effort = "exact"
 [contact]
 distance = 0.003
 friction = 0.3
@@ -158,6 +159,7 @@ frame_rate = 60
 steps_per_frame = 4
 [solver]
 tolerance = 1e-9
+effort = "exact"
 [contact]
 distance = 0.002
 friction = 0.4
@@ -193,6 +195,7 @@ frame_rate = 60
 steps_per_frame = 4
 [solver]
 tolerance = 1e-9
+effort = "exact"
 [contact]
 distance = 0.003
 [[body]]

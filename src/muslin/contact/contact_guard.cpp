@@ -324,10 +324,12 @@ const Potential& ContactGuard::potential(ConstVectors q, StepGuard::Friction fri
   }
   const Stopwatch watch(counts_.potential_seconds);
   measure(q);
-  if (friction == StepGuard::Friction::kept) {
-    *potential_ = ContactPotential(distances_, model_->map, q, *potential_);
-  } else {
+  if (friction == StepGuard::Friction::anew) {
     potential_.emplace(distances_, model_->map, q, friction_, start_, memory_.slips);
+  } else {
+    const bool tangent = friction == StepGuard::Friction::kept_tangent;
+    *potential_ = ContactPotential(distances_, model_->map, q, *potential_,
+                                   tangent ? SlidingStiffness::tangent : SlidingStiffness::secant);
   }
   return *potential_;
 }
@@ -336,7 +338,7 @@ const Potential& ContactGuard::potential(ConstVectors q, StepGuard::Friction fri
 double ContactGuard::slack() const { return slack_share * floor_share * model_->limits.gap_floor; }
 
 void ContactGuard::for_each_contact(const std::function<void(const Contact&)>& visit) const {
-  potential_->hessian().for_each_row(visit);
+  potential_->secant_hessian().for_each_row(visit);
 }
 
 void ContactGuard::end(ConstVectors q) {

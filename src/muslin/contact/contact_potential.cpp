@@ -84,8 +84,10 @@ ContactPotential::ContactPotential(const PairDistances& distances, std::shared_p
 }
 
 ContactPotential::ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map,
-                                   ConstVectors lagged, const ContactPotential& friction)
+                                   ConstVectors lagged, const ContactPotential& friction,
+                                   SlidingStiffness sliding)
     : ContactPotential(distances, std::move(map), lagged, friction.friction_) {
+  sliding_ = sliding;
   friction_terms_ = friction.friction_terms_;
   carried_ = friction.carried_;
 }
@@ -261,7 +263,7 @@ void ContactPotential::add_tilt(const MergedContact& contact, ConstVectors x,
   rows.push_back({contact.points, {0, -b * (1 - along), -b * along, b}, contact.normal, stiffness, 0, {}});
 }
 
-ContactHessian ContactPotential::hessian(ConstVectors q) const {
+ContactHessian ContactPotential::hessian(ConstVectors q, SlidingStiffness stiffness) const {
   std::vector<Vec3> buffer;
   std::vector<MergedContact> merged;
   const ConstVectors x = points(q, buffer);
@@ -279,16 +281,18 @@ ContactHessian ContactPotential::hessian(ConstVectors q) const {
   parallel_for(friction_terms_.size(), potential_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const FrictionTerm& sliding = friction_terms_[i];
-      const double secant =
-          sliding.limit * friction_law(slip(sliding, x, q).norm(), friction_.stick_length).curvature;
-      rows[normal_rows + i] = {sliding.contact.points, sliding.weights, sliding.contact.normal, 0, secant,
-                               carried(sliding)};
+      const Vec3 e = slip(sliding, x, q);
+      const double length = e.norm();
+      const double secant = sliding.limit * friction_law(length, friction_.stick_length).curvature;
+      ContactRow& row = rows[normal_rows + i];
+      row = {sliding.contact.points, sliding.weights, sliding.contact.normal, 0, secant, carried(sliding)};
+      if (stiffness == SlidingStiffness::secant || length < friction_.stick_length) continue;
+      row.normal = sliding.contact.normal.cross(e) / length;
+      std::swap(row.normal_stiffness, row.tangential);
     }
   });
   return {*map_, rows};
 }
-
-ContactHessian ContactPotential::hessian() const { return hessian(lagged_q_); }
 
 void ContactPotential::add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const {
   hessian(q).add_hessian_product(q, p, y);

@@ -43,6 +43,10 @@ struct PairSlip {
   Vec3 slip = Vec3::Zero();  ///< of the first feature over the second, at most stick_length [m]
 };
 
+/// The Hessian of friction beyond the stick length: the secant in all directions, or the tangent, which is 0
+/// along the slip.
+enum class SlidingStiffness { secant, tangent };
+
 class ContactPotential : public Potential {
  public:
   /// For q near `lagged` (#V by 3, [m]), within the boxes of the candidates; `distances` are those at
@@ -53,19 +57,19 @@ class ContactPotential : public Potential {
                    Friction friction, ConstVectors start, std::span<const PairSlip> slips = {});
   /// Takes normal forces, closest points and slips of friction from another potential of the same step.
   ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
-                   const ContactPotential& friction);
+                   const ContactPotential& friction, SlidingStiffness sliding = SlidingStiffness::secant);
 
   double value(ConstVectors q) const override;
   void add_gradient(ConstVectors q, Vectors g) const override;
-  /// Adds the positive curvatures k b″ n nᵀ and the secant of friction, which are positive semidefinite. The
-  /// negative term b′ ∂²d/∂x² is left out.
+  /// Adds the positive curvatures k b″ n nᵀ and the secant of friction, or its tangent where it slides, which
+  /// are positive semidefinite. The negative term b′ ∂²d/∂x² is left out.
   void add_hessian_product(ConstVectors q, ConstVectors p, Vectors y) const override;
   void add_diagonal_blocks(ConstVectors q, std::span<Mat3> blocks) const override;
   void linearize(ConstVectors q, HessianSink& into, std::size_t first) const override;
 
-  ContactHessian hessian(ConstVectors q) const;
-  /// Returns the Hessian at the q the potential was made for.
-  ContactHessian hessian() const;
+  ContactHessian hessian(ConstVectors q) const { return hessian(q, sliding_); }
+  /// Returns the Hessian with the secant of friction at the q the potential was made for.
+  ContactHessian secant_hessian() const { return hessian(lagged_q_, SlidingStiffness::secant); }
 
   /// The two sums of W.
   struct Parts {
@@ -101,6 +105,7 @@ class ContactPotential : public Potential {
   void carry(FrictionTerm& sliding, ConstVectors x, ConstVectors q, Carried& carried) const;
   std::span<const SurfaceMap::Entry> carried(const FrictionTerm& sliding) const;
   Vec3 slip(const FrictionTerm& sliding, ConstVectors x, ConstVectors q) const;
+  ContactHessian hessian(ConstVectors q, SlidingStiffness stiffness) const;
   void add_tilt(const MergedContact& contact, ConstVectors x, std::vector<ContactRow>& rows) const;
 
   ContactPotential(const PairDistances& distances, std::shared_ptr<const SurfaceMap> map, ConstVectors lagged,
@@ -109,6 +114,7 @@ class ContactPotential : public Potential {
   std::shared_ptr<const ContactSurface> surface_;
   std::shared_ptr<const SurfaceMap> map_;
   Friction friction_;
+  SlidingStiffness sliding_ = SlidingStiffness::secant;
   std::vector<Vec3> lagged_q_;  ///< where the potential was made
   std::vector<Vec3> lagged_;    ///< points there
   std::vector<ContactTerm> terms_;

@@ -37,8 +37,9 @@ class MUSLIN_API StepGuard {
   virtual void advance(Vectors x, ConstVectors d) = 0;
 
   /// Selects where friction takes its normal forces and closest points: at x (anew), or from the last
-  /// potential of this step (kept).
-  enum class Friction { anew, kept };
+  /// potential of this step (kept). Its Hessian is then the secant, whose steps do not overshoot, or the
+  /// tangent (kept_tangent): no stiffness along a slip.
+  enum class Friction { anew, kept, kept_tangent };
   /// Returns the energy of contact near x; call at every iterate. Friction is lagged at x, or taken from the
   /// last potential of this step. Valid until the next call.
   virtual const Potential& potential(ConstVectors x, Friction friction) = 0;

@@ -32,6 +32,8 @@ constexpr int max_in_float = 1000;
 /// Iterations in which friction is lagged at the iterate. Later the minimum would move with the iterates and
 /// not be reached.
 constexpr int renewals = 3;
+/// Iterations after which the Hessian of friction is the tangent, unless the last step was shortened.
+constexpr int tangent_from = 6;
 
 /// Iterations in which held vertices that are behind their targets push obstacles.
 constexpr int max_pushes = 6;
@@ -153,8 +155,7 @@ class Newton {
       std::swap(g_, workspace_.base);
       return;
     }
-    contact_ = &guard_->potential(
-        x_, report_.newton_iterations < renewals ? StepGuard::Friction::anew : StepGuard::Friction::kept);
+    contact_ = &guard_->potential(x_, friction());
     with_contact_.potentials.back() = contact_;
     set_zero(g_);
     contact_value_ = contact_->add_gradient_and_value(x_, g_);
@@ -162,6 +163,13 @@ class Newton {
       g_[v] = function_.held(v) ? Vec3(Vec3::Zero()) : Vec3(workspace_.base[v] + scale_ * g_[v]);
     });
     imbalance_ = function_.imbalance(g_);
+  }
+
+  /// The tangent overshoots far from the minimum; near it the secant takes many iterations.
+  StepGuard::Friction friction() const {
+    if (report_.newton_iterations < renewals) return StepGuard::Friction::anew;
+    const bool is_near = report_.newton_iterations >= tangent_from && length_t_ == 1;
+    return is_near ? StepGuard::Friction::kept_tangent : StepGuard::Friction::kept;
   }
 
   /// One iteration; false when the step has ended.
