@@ -284,6 +284,7 @@ def scene_input(scene, names, snapshots, first, last):
             raise Problem(f"{obj.name}: {refused}") from None
         if m.model == "LATTICE":
             cloth.voxel_width = (m.voxel_width or suggestion(obj, snapshots[obj.name])) * scale
+            cloth.separate_parts = m.separate_parts
         else:
             if m.rest_shape == "BASE":
                 cloth.rest_mesh = name + ".rest.obj"

@@ -164,6 +164,7 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
             row = layout.row(align=True)
             row.prop(m, "voxel_width")
             row.operator("muslin.suggest_width", text="", icon="LIGHT")
+            layout.prop(m, "separate_parts")
         else:
             layout.prop(m, "rest_shape")
             layout.prop(m, "use_stretch_limit")

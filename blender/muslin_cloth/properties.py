@@ -58,6 +58,9 @@ class MuslinObject(bpy.types.PropertyGroup):
     voxel_width: FloatProperty(
         name="Voxel Width", subtype="DISTANCE", min=0, soft_max=10, precision=4,
         description=f"{keys.sentence('body', 'voxel_width')}. 0 uses the default")
+    separate_parts: BoolProperty(
+        name="Separate Parts", default=keys.default("body", "separate_parts", model="lattice"),
+        description=keys.sentence("body", "separate_parts"))
     pin_group: StringProperty(
         name="Pin Group", description="Vertices of weight 0.5 or more are held. Soft pins hold by the weight")
     pin_animated: BoolProperty(

@@ -28,6 +28,7 @@ class Cloth:
     own_numbers: Dict[str, object] = field(default_factory=dict)  # of the body itself
     thickness: float = 0.0  # [m]; 0: muslin's default. Of a shell as contact sees it
     voxel_width: float = 0.0  # [m], of a lattice
+    separate_parts: bool = False  # of a lattice
     rest_mesh: str = ""  # file name
     pin: str = ""  # file name of the sequence; "": stands still
     pinned: bool = False
@@ -195,6 +196,8 @@ def _body(cloth):
     lines += [f"{key} = {varied(x)}" for key, x in cloth.own_numbers.items()]
     if cloth.voxel_width > 0:
         lines.append(f"voxel_width = {number(cloth.voxel_width)}")
+    if cloth.separate_parts:
+        lines.append("separate_parts = true")
     if cloth.thickness > 0:
         lines.append(f"thickness = {number(cloth.thickness)}")
     if cloth.stretch_limit is not None:

@@ -146,7 +146,8 @@ class SceneText(Scratch):
             title='A "quoted" title\n', frames=12, frame_rate=23.976, steps_per_frame=3, gravity=[(0, -9.81, 0)],
             wind=scene_text.Wind([(1, 0, 0), (2, 0, 0)], gust=0.5, gust_length=2, seed=7),
             cloths=[scene_text.Cloth("a b", "shell", "cotton", pinned=True, pin="a b.pc2", rest_mesh="a b.obj"),
-                    scene_text.Cloth("solid", "lattice", "rubber", thickness=0.2, voxel_width=0.2, pinned=True,
+                    scene_text.Cloth("solid", "lattice", "rubber", thickness=0.2, voxel_width=0.2,
+                                     separate_parts=True, pinned=True,
                                      release=0.25, pin_stiffness=40, self_contact=False)])
 
     def check(self, scene, moving=False):

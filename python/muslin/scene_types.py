@@ -675,6 +675,7 @@ LatticeBody = TypedDict(
         "voxel_width": Required[float],  # edge of a voxel: halving it doubles the detail and takes at least eight times as long for a solid, four times for a sheet [m]
         "voxels": Optional[Literal["cover", "threshold"]],  # `"cover"`: every voxel that meets the solid · `"threshold"`: every voxel whose centre has a signed distance below `threshold`
         "threshold": Optional[float],  # signed distance, negative inside; only with `voxels = "threshold"` [voxel widths]
+        "separate_parts": Optional[bool],  # `true`: solids of the mesh that are apart stay apart, even if they are nearer than a voxel. Parts that cross each other, or lie one inside the other, are one solid
         "bracing": Optional[Literal["kuhn", "full"]],  # `"kuhn"`: springs along the edges of six tetrahedra per voxel · `"full"`: all diagonals, equally stiff in mirrored directions
         "mass": Optional[Literal["solid", "cells"]],  # `"solid"`: mass and stiffness of a voxel are scaled by the share that the solid fills · `"cells"`: every voxel has full mass and stiffness
         "boundary_springs": Optional[Literal["full", "shared"]],  # `"full"`: springs on the surface are as stiff as inside · `"shared"`: scaled by the share of voxels around them, as in a solid cut out of a block. Without it a sheet of one voxel is 1.75 times too stiff in stretch and 4.5 times in bending

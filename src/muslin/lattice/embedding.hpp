@@ -36,7 +36,8 @@ struct MUSLIN_API Embedding {
 
 /// Returns the trilinear weights of the voxel each point lies in at rest; a point outside all voxels is
 /// carried by the nearest one (extrapolated). A point in a face shared by voxels may be carried by any of
-/// them: the weights are the same. Prepared for the transpose.
+/// them: the weights are the same. Points are given where they lie in the grid, before the offsets of slabs.
+/// Prepared for the transpose.
 MUSLIN_API Embedding embed(const Lattice& lattice, ConstVectors points);
 
 }  // namespace muslin

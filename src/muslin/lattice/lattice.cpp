@@ -328,6 +328,15 @@ int find(const std::vector<Vec3i>& sorted, const Vec3i& coordinates) {
 int Lattice::find_voxel(const Vec3i& coordinates) const { return find(voxels, coordinates); }
 int Lattice::find_vertex(const Vec3i& coordinates) const { return find(vertices, coordinates); }
 
+Vec3 Lattice::offset(const Vec3i& coordinates) const {
+  Vec3 offset = Vec3::Zero();
+  for (const LatticeSlab& slab : slabs) {
+    if (coordinates[slab.axis] < slab.first) break;
+    offset = slab.offset;
+  }
+  return offset;
+}
+
 Lattice build_lattice(const Mesh& mesh, const SignedDistance& distance, const LatticeSettings& settings,
                       const Progress& progress) {
   require_settings(settings);

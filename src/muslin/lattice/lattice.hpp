@@ -31,6 +31,13 @@ struct LatticeSettings {
   double threshold = 0.5;  ///< in voxel widths; only for VoxelRule::threshold
 };
 
+/// A slab of the grid whose vertices, from the integer coordinate `first` along `axis` on to the next slab,
+/// lie at rest elsewhere than in the grid, by −offset [m].
+struct LatticeSlab {
+  int axis = 0, first = 0;
+  Vec3 offset = Vec3::Zero();
+};
+
 struct MUSLIN_API Lattice {
   Vec3 origin = Vec3::Zero();    ///< corner of voxel (0,0,0) [m]
   double width = 1;              ///< [m]
@@ -43,14 +50,21 @@ struct MUSLIN_API Lattice {
   std::vector<std::array<int, 8>> voxel_vertices;  ///< #C corner c at offset (c&1, c>>1&1, c>>2&1) in x, y, z
   std::vector<Vec3i> vertices;                     ///< #V integer coordinates
 
+  /// By ascending `first`, of one axis; empty: every vertex lies where it is in the grid.
+  std::vector<LatticeSlab> slabs;
   double coverage = 1;  ///< share of the mesh's area that lies inside kept voxels
 
   std::size_t voxel_count() const { return voxels.size(); }
   std::size_t vertex_count() const { return vertices.size(); }
-  Vec3 rest_position(std::size_t v) const { return origin + width * vertices[v].cast<double>(); }
+  Vec3 rest_position(std::size_t v) const {
+    const Vec3 in_grid = origin + width * vertices[v].cast<double>();
+    return slabs.empty() ? in_grid : Vec3(in_grid - offset(vertices[v]));
+  }
   /// Returns the index of the voxel at these coordinates, −1 if it is not kept.
   int find_voxel(const Vec3i& coordinates) const;
   int find_vertex(const Vec3i& coordinates) const;
+  /// Returns the offset of the slab of a vertex.
+  Vec3 offset(const Vec3i& coordinates) const;
 };
 
 /// Builds the lattice of the solid that `mesh` encloses. The grid is centred on the mesh's bounding box,

@@ -87,23 +87,36 @@ class LatticeBuilder {
 
   void fill(const Progress& progress) {
     progress.at(0.1, "distance field");
-    const SignedDistance distance(body_.solid);
+    if (own_.separate_parts) body_.separate = SeparateParts(body_.solid, own_.lattice);
+    const Mesh solid = body_.separate.in_grid(body_.solid);
+    const SignedDistance distance(solid);
     progress.at(0.2, "voxels");
-    body_.lattice = build_lattice(body_.solid, distance, own_.lattice, progress_part(progress, 0.2, 0.7));
+    body_.lattice = build_lattice(solid, distance, own_.lattice, progress_part(progress, 0.2, 0.7));
     progress.at(0.7, "springs");
     const std::vector<double> fill = body_.lattice.fill;
     body_.lattice.fill = body_.voxel_shares();
     body_.springs = build_springs(body_.lattice, own_.bracing);
     body_.lattice.fill = fill;
     progress.at(0.8, "skin");
-    body_.skin = embed(body_.lattice, body_.skin_mesh().positions);
+    body_.skin = body_.carry(body_.skin_mesh().positions);
     progress.at(0.9, "contour");
     const bool one_layer = body_.lattice.extent.minCoeff() == 1;
-    body_.contour = build_contour(body_.lattice, body_.solid, distance,
+    body_.contour = build_contour(body_.lattice, solid, distance,
                                   one_layer ? ContourMethod::squares : ContourMethod::cubes);
+    body_.lattice.slabs = body_.separate.slabs(body_.lattice);
+    if (!body_.separate.empty())
+      body_.contour.embedding.apply(rest_positions(), body_.contour.mesh.positions);
     body_.vertex_count = static_cast<int>(body_.lattice.vertex_count());
     count();
     advise();
+  }
+
+  std::vector<Vec3> rest_positions() const {
+    std::vector<Vec3> vertices;
+    vertices.reserve(body_.lattice.vertex_count());
+    for (std::size_t v = 0; v < body_.lattice.vertex_count(); ++v)
+      vertices.push_back(body_.lattice.rest_position(v));
+    return vertices;
   }
 
   void count() {
@@ -132,15 +145,16 @@ class LatticeBuilder {
                       "cheaper",
                       body_.thickness / width));
     }
-    if (const auto shared = find_shared_voxels(body_.solid, body_.lattice)) {
-      say(fmt::format(
-          "{} parts of its mesh are apart but share voxels, so they move as one, such as those of vertices "
-          "{} and {}, {:.2g} m apart; use a smaller `voxel_width`, or give each part a [[body]] of its own",
-          shared->parts, shared->vertices[0] + 1, shared->vertices[1] + 1, shared->distance));
-    }
     if (body_.lattice.voxel_count() > many_voxels) {
       say(fmt::format("{} voxels take long and several GiB of memory; a larger `voxel_width` takes less",
                       body_.lattice.voxel_count()));
+    }
+    if (own_.separate_parts) return;
+    if (const auto shared = find_shared_voxels(body_.solid, body_.lattice)) {
+      say(fmt::format(
+          "{} parts of its mesh are apart but share voxels, so they move as one, such as those of vertices "
+          "{} and {}, {:.2g} m apart; set `separate_parts = true` to keep them apart",
+          shared->parts, shared->vertices[0] + 1, shared->vertices[1] + 1, shared->distance));
     }
   }
 
@@ -151,11 +165,7 @@ class LatticeBuilder {
       throw Error(ErrorKind::input, damping->variation.place,
                   "`stiffness_damping` of springs cannot vary by a map",
                   "give a number, which damps in proportion to the moduli, or a solid by `law`");
-    std::vector<Vec3> vertices;
-    vertices.reserve(body_.lattice.vertex_count());
-    for (std::size_t v = 0; v < body_.lattice.vertex_count(); ++v)
-      vertices.push_back(body_.lattice.rest_position(v));
-    body_.vertex_maps = over_points(body_.maps, body_.mesh, vertices);
+    body_.vertex_maps = over_points(body_.maps, body_.mesh, rest_positions());
     for (MappedNumber& map : read_maps(settings_.variations, body_table(), inputs_.files, body_))
       body_.maps.push_back(std::move(map));
   }

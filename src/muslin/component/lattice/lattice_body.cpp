@@ -109,7 +109,7 @@ double LatticeBody::max_stretch(ConstVectors x) const {
 }
 
 std::vector<std::uint8_t> LatticeBody::in_group(const MeshGroup& group) const {
-  const Embedding carriers = embed(lattice, group_points(mesh, group, lattice.width));
+  const Embedding carriers = carry(group_points(mesh, group, lattice.width));
   std::vector<std::uint8_t> member(lattice.vertex_count(), 0);
   for (std::size_t p = 0; p < carriers.size(); ++p) {
     for (std::size_t s = 0; s < 8; ++s) {
@@ -121,7 +121,7 @@ std::vector<std::uint8_t> LatticeBody::in_group(const MeshGroup& group) const {
 }
 
 AttachedPoint LatticeBody::attach(const Vec3& at) const {
-  AttachedPoint attached{embed(lattice, std::span(&at, 1)), ""};
+  AttachedPoint attached{carry(std::span(&at, 1)), ""};
   const auto& weights = attached.point.weights.front();
   if (*std::min_element(weights.begin(), weights.end()) < -0.01)
     attached.warning = fmt::format("lies outside of body `{}`; it moves with the nearest voxel", name);
@@ -152,7 +152,7 @@ std::optional<ContactPart> LatticeBody::contact_part() const {
                         (thin ? std::min(lattice.width, thickness) : lattice.width);
   // A body without stretch resistance still needs contact to carry its weight.
   if (!(part.body.stiffness > 0)) part.body.mass = statistics.mass / vertex_count;
-  part.add_mesh(mesh, cut, source ? embed(lattice, mesh.positions) : skin);
+  part.add_mesh(mesh, cut, source ? carry(mesh.positions) : skin);
   if (part.edge > 2 * lattice.width) {
     part.warning = fmt::format(
         "body {}: contact sees its mesh, whose edges of {:.3g} m do not bend as its voxels do; "

@@ -14,6 +14,7 @@
 #include "muslin/component/body_settings.hpp"
 #include "muslin/component/component.hpp"
 #include "muslin/component/lattice/lattice_body_settings.hpp"
+#include "muslin/component/lattice/separate_parts.hpp"
 #include "muslin/lattice/lattice.hpp"
 #include "muslin/lattice/springs.hpp"
 #include "muslin/potential/spring_network.hpp"
@@ -27,6 +28,7 @@ class LatticeBody final : public Component {
   Mesh
       solid;  ///< filled with voxels: the mesh itself, faces outward, or the sheet with its thickness; closed
   double thickness = 0;  ///< of a sheet [m]
+  SeparateParts separate;  ///< of `solid`
   Lattice lattice;
   Springs springs;
   Contour contour;
@@ -58,6 +60,8 @@ class LatticeBody final : public Component {
   std::string description() const override;
 
   const LatticeBodySettings& own() const { return settings.own.as<LatticeBodySettings>(); }
+  /// Embeds points [m] in the voxels of the part that is nearest.
+  Embedding carry(ConstVectors points) const { return embed(lattice, separate.in_grid(points)); }
   /// Returns the share by which each voxel counts: its fill, or 1 with Mass::cells.
   std::vector<double> voxel_shares() const;
   /// Returns #voxels: the mean of a mapped number over a voxel's corners, over the nominal one; 1 without a

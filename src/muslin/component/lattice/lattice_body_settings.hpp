@@ -14,6 +14,7 @@ struct LatticeBodySettings {
   enum class Inside { automatic, filled, sheet } inside = Inside::automatic;
   std::optional<double> thickness;  ///< of an open mesh [m]; default: one voxel width
   LatticeSettings lattice;
+  bool separate_parts = false;  ///< solids of the mesh share no voxels
   Bracing bracing = Bracing::kuhn;
   enum class Mass { solid, cells } mass = Mass::solid;
   enum class BoundarySprings { full, shared } boundary_springs = BoundarySprings::full;

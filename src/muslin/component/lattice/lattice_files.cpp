@@ -26,6 +26,11 @@ VtkImage field_around(const Lattice& lattice, const Mesh& solid, const Progress&
   grid.width = lattice.width;
   grid.origin = lattice.origin - Vec3::Constant(grid.width);
   grid.samples = lattice.extent + Vec3i::Constant(3);
+  if (!lattice.slabs.empty()) {
+    const Box bounds = solid.bounds();
+    grid.origin = bounds.min() - Vec3::Constant(grid.width);
+    grid.samples = (bounds.sizes() / grid.width).array().ceil().cast<int>() + 3;
+  }
   const double band =
       grid.size() > full_field_samples ? 4 * grid.width : std::numeric_limits<double>::infinity();
   DistanceField field = sample_field(SignedDistance(solid), grid, band, progress);
@@ -105,6 +110,7 @@ std::string LatticeBody::description_json() const {
   if (sheet) json["thickness"] = thickness;
   json["voxel_width"] = lattice.width;
   json["extent"] = {lattice.extent.x(), lattice.extent.y(), lattice.extent.z()};
+  if (!separate.empty()) json["separate_parts"] = separate.count();
   json["material"] = settings.material.name;
   append_counts(json, s);
   json["contour"] = name_of(contour.method);
@@ -121,6 +127,7 @@ std::string LatticeBody::description() const {
                                  counted(mesh.face_count(), "polygon"), nature);
   text += fmt::format("  voxels      {} of {:.6g} m in {} x {} x {}, {:.4g} % of the surface covered\n",
                       s.voxels, lattice.width, n.x(), n.y(), n.z(), 100 * s.coverage);
+  if (!separate.empty()) text += fmt::format("  parts       {}, kept apart\n", separate.count());
   text += fmt::format("  lattice     {} vertices, {} tetrahedra\n", s.vertices, s.tetrahedra);
   text += fmt::format("  springs     {} edge, {} face diagonal, {} body diagonal ({})\n", s.springs[0],
                       s.springs[1], s.springs[2], bracing_names()[static_cast<std::size_t>(own().bracing)]);

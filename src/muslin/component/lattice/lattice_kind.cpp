@@ -153,6 +153,10 @@ const schema::Table& keys() {
                                 return lattice.rule == VoxelRule::threshold;
                               })
                               .means("signed distance, negative inside; only with `voxels = \"threshold\"`")),
+       schema::truth("separate_parts", &Own::separate_parts)
+           .means(
+               "`true`: solids of the mesh that are apart stay apart, even if they are nearer than a voxel. "
+               "Parts that cross each other, or lie one inside the other, are one solid"),
        schema::word("bracing", &Own::bracing, bracing_names())
            .means("`\"kuhn\"`: springs along the edges of six tetrahedra per voxel · `\"full\"`: all "
                   "diagonals, equally stiff in mirrored directions"),
