@@ -4,6 +4,7 @@ Ray starts a task again when its worker or its node is lost; the task continues 
 checkpoint.
 """
 
+import logging
 import signal
 import socket
 import threading
@@ -35,7 +36,7 @@ class RayPool:
             if self._began:
                 _knock(address)
                 cluster = None if address == "local" else address
-                ray.init(cluster, log_to_driver=False, logging_level="WARNING")
+                ray.init(cluster, log_to_driver=False, logging_level=logging.WARNING)
         except (OSError, ValueError, RuntimeError) as error:
             remedy = "start one with `ray start --head`, or name its address"
             raise FileError(f"there is no Ray cluster at `{address}`: {error}", remedy) from None

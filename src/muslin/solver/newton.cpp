@@ -32,7 +32,8 @@ constexpr int max_in_float = 1000;
 /// Iterations in which friction is lagged at the iterate. Later the minimum would move with the iterates and
 /// not be reached.
 constexpr int renewals = 3;
-/// Iterations after which the Hessian of friction is the tangent, unless the last step was shortened.
+/// Iterations after which the Hessian of friction is the tangent in every other, unless the last step was
+/// shortened.
 constexpr int tangent_from = 6;
 
 /// Iterations in which held vertices that are behind their targets push obstacles.
@@ -165,10 +166,12 @@ class Newton {
     imbalance_ = function_.imbalance(g_);
   }
 
-  /// The tangent overshoots far from the minimum; near it the secant takes many iterations.
+  /// The tangent overshoots far from the minimum; near it the secant takes many iterations. Taken in turns,
+  /// the secant ends the cycles into which the tangent may fall.
   StepGuard::Friction friction() const {
-    if (report_.newton_iterations < renewals) return StepGuard::Friction::anew;
-    const bool is_near = report_.newton_iterations >= tangent_from && length_t_ == 1;
+    const int n = report_.newton_iterations;
+    if (n < renewals) return StepGuard::Friction::anew;
+    const bool is_near = n >= tangent_from && n % 2 == 0 && length_t_ == 1;
     return is_near ? StepGuard::Friction::kept_tangent : StepGuard::Friction::kept;
   }
 
