@@ -29,12 +29,13 @@ def table(directory):
 
 
 def test_a_node_is_killed_and_nothing_lost(source, cluster, tmp_path):
+    # A run takes several seconds, which a node needs to die.
     tables = {
         "scene": str(source / "scenes/thesis/2_two_corners.toml"),
         "frames": 96,
         "pictures": False,
         "pages": [],
-        "grid": {"time.steps_per_frame": [6, 8, 10], "force.0.acceleration.1": [-9.8, -5.0]},
+        "grid": {"time.steps_per_frame": [900, 1000], "force.0.acceleration.1": [-9.8, -5.0]},
     }
     doomed, _ = [cluster.add_node(num_cpus=1) for _ in range(2)]
     cluster.wait_for_nodes()
@@ -56,8 +57,8 @@ def test_a_node_is_killed_and_nothing_lost(source, cluster, tmp_path):
     killer.start()
     made = muslin.sweep(tables, tmp_path / "ray", ray=cluster.address)
     killer.join()
-    assert hit and len(hit[0]) < 6
-    assert made.column("exit_code") == [0] * 6 and made.column("frames") == [96] * 6
+    assert hit and len(hit[0]) < 4
+    assert made.column("exit_code") == [0] * 4 and made.column("frames") == [96] * 4
     sessions = [
         json.loads(file.read_text())["timings"]["sessions"] for file in tmp_path.glob("ray/runs/*/run.json")
     ]
