@@ -192,7 +192,7 @@ KeyframesOfAMotion = TypedDict(
     "KeyframesOfAMotion",
     {
         "time": Required[float],  # time of the keyframe, later than the previous one [s]
-        "translate": Optional[Vector],  # displacement [m]
+        "translate": Optional[Vector],  # displacement from the modelled place [m]
         "rotate": Optional[Vector],  # rotation about `pivot`: about the x axis, then y, then z; 360 is a full turn [degrees]
         "scale": Optional[Union[float, Vector]],  # of pins: scale about `pivot`, a number or one per axis; applied first
         "interpolation": Optional[Literal["linear", "step", "smooth"]],  # the way to the next keyframe: `"linear"`, at a constant rate · `"step"`, at once when it is reached · `"smooth"`, begins and ends at rest and never overshoots

@@ -81,7 +81,21 @@ TEST(Holds, LaterPinHasPriorityAndTheEarlierContinuesAfterIt) {
   EXPECT_EQ(s.x[0], Vec3(2, 0, 0));
 }
 
-TEST(Holds, MotionIsRelativeToTheStartOfThePin) {
+TEST(Holds, KeysAreOffsetsFromTheStartAlsoIfTheFirstIsLaterOrNotAtRest) {
+  Motion lift;
+  lift.pivot = Vec3(1, 0, 0);
+  lift.keys = {{0.5, Vec3(0, 3, 0), turn(90, Vec3::UnitZ()), Vec3(2, 1, 1)},
+               {1.5, Vec3(0, 5, 0), turn(90, Vec3::UnitZ()), Vec3(4, 1, 1)}};
+  Stepper s{{{"hand", {0}, 0, 10, lift}}, {Vec3(2, 0, 0)}, {}};
+  s.step(0, 0.25);  // twice as far from the pivot, turned by a quarter, lifted by 3
+  EXPECT_LT((s.x[0] - Vec3(1, 5, 0)).norm(), 1e-14);
+  s.step(0.25, 0.5);
+  EXPECT_LT((s.x[0] - Vec3(1, 5, 0)).norm(), 1e-14);
+  s.step(0.5, 1.5);
+  EXPECT_LT((s.x[0] - Vec3(1, 9, 0)).norm(), 1e-14);
+}
+
+TEST(Holds, MotionOfALatePinIsRelativeToItsBeginning) {
   Motion rise;
   rise.keys = {{0, Vec3(0, 0, 0), turn(0, Vec3::UnitX())}, {2, Vec3(0, 2, 0), turn(0, Vec3::UnitX())}};
   Stepper s{{{"a", {0}, 1, 10, rise}}, {Vec3(0, 0, 0)}, {}};

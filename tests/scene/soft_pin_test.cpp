@@ -262,6 +262,27 @@ TEST(SoftPinRun, ResumesAndRunsOnAnyNumberOfThreadsWithTheSameBits) {
   EXPECT_EQ(resumed.state().velocities, whole.state().velocities);
 }
 
+TEST(PinRun, FirstKeyframeIsAnOffsetFromTheModelledPlaceAndAJumpWarns) {
+  const std::string aside =
+      "[[pin]]\nname = 'hand'\nkeyframes = [{ time = 0.5, translate = [0.01, 0, 0] }]\n" + row;
+  const auto model = sheet(aside);
+  EXPECT_THAT(model->warnings,
+              testing::Contains(HasSubstr("pin hand: its first keyframe is 0.01 m from where its "
+                                          "vertices are modelled")));
+  Simulation simulation(model);
+  simulation.advance();
+  for (const int v : model->pins.front().vertices) {
+    const auto i = static_cast<std::size_t>(v);
+    EXPECT_LT((simulation.state().positions[i] - model->rest_positions[i] - Vec3(0.01, 0, 0)).norm(), 1e-15);
+  }
+  EXPECT_THAT(
+      sheet("[[pin]]\nfrom = 0.1\nkeyframes = [{ time = 0, translate = [1, 0, 0] }]\n" + row)->warnings,
+      testing::Not(testing::Contains(HasSubstr("first keyframe"))));
+  EXPECT_THAT(
+      sheet("[[pin]]\nkeyframes = [{ time = 0 }, { time = 1, translate = [1, 0, 0] }]\n" + row)->warnings,
+      testing::Not(testing::Contains(HasSubstr("first keyframe"))));
+}
+
 TEST(SoftPinRun, WrongKeysAreErrors) {
   EXPECT_THAT(message("[[pin]]\nstiffness = 1\ntime = 1\n" + row), HasSubstr("both say how hard"));
   EXPECT_THAT(message("[[pin]]\ndamping = 1\n" + row), HasSubstr("stiffness"));

@@ -32,7 +32,9 @@ const schema::Table& motion_keyframe_table() {
            .unit("s")
            .required()
            .means("time of the keyframe, later than the previous one"),
-       schema::vector("translate", &Motion::Key::translate).unit("m").means("displacement"),
+       schema::vector("translate", &Motion::Key::translate)
+           .unit("m")
+           .means("displacement from the modelled place"),
        schema::custom<Motion::Key>(
            "rotate", {Type::vector},
            [](const Key& key, const TomlTable& given, Motion::Key& s) {

@@ -41,6 +41,13 @@ Vec3 Motion::scale_at(double time) const {
   return around.from.scale + around.share() * (around.to.scale - around.from.scale);
 }
 
+Eigen::Affine3d Motion::from_model(double time) const {
+  const Vec3 scale = scale_at(time);
+  const Eigen::Affine3d there(at(time));
+  if (scale == Vec3::Ones()) return there;
+  return there * Eigen::Translation3d(pivot) * Eigen::Scaling(scale) * Eigen::Translation3d(-pivot);
+}
+
 Eigen::Affine3d Motion::between(double begin, double time) const {
   if (keys.empty()) return Eigen::Affine3d::Identity();
   const Eigen::Isometry3d there = at(time), back = at(begin).inverse();

@@ -37,13 +37,16 @@ struct MUSLIN_API Motion {
   /// Returns the motion without its scale.
   Eigen::Isometry3d at(double time) const;
   Vec3 scale_at(double time) const;
+  /// Returns the map from modelled places to places at `time`, scale included.
+  Eigen::Affine3d from_model(double time) const;
   /// Returns the map from places at time `begin` to places at `time`, scale included.
   Eigen::Affine3d between(double begin, double time) const;
 };
 
-/// Holds `vertices` from `from` until `until`: the target of vertex v is motion(t)·motion(from)⁻¹ applied to
-/// its position when the pin began. With a sequence, v instead keeps the offset that it had at that time from
-/// the point it follows. Vertices of a hard pin are at their targets, those of a soft one are pulled there.
+/// Holds `vertices` from `from` until `until`. The target of vertex v is motion(t) applied to its position at
+/// the start. If the pin begins later, it takes v where it is: the target is motion(t)·motion(from)⁻¹ applied
+/// to its position then. With a sequence, v instead keeps the offset that it had when the pin began from the
+/// point it follows. Vertices of a hard pin are at their targets, those of a soft one are pulled there.
 struct Pin {
   std::string name;
   std::vector<int> vertices;                               ///< global vertex indices, ascending
@@ -56,6 +59,7 @@ struct Pin {
   std::vector<double> damping = {};    ///< #vertices, against the motion of the target [N·s/m]; or empty
   KeyedNumber weight = 1;              ///< of a soft pin over time: a factor of both
 
+  bool begins_late() const { return from > 0; }
   bool is_soft() const { return !stiffness.empty(); }
   /// True if it acts in the step from time_begin to time_end.
   bool acts(double time_begin, double time_end) const { return acting(from, until, time_begin, time_end); }

@@ -15,7 +15,7 @@ PinTargets::PinTargets(const Pin& pin, double time)
     : pin_(pin),
       time_(time),
       moves_(!pin.motion.keys.empty()),
-      motion_(pin.motion.between(std::max(pin.from, 0.0), time)) {}
+      motion_(pin.begins_late() ? pin.motion.between(pin.from, time) : pin.motion.from_model(time)) {}
 
 Vec3 PinTargets::at(std::size_t i, const Vec3& anchor) const {
   if (pin_.sequence) return anchor + point_of_sequence(pin_, time_, i);

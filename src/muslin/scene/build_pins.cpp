@@ -29,6 +29,9 @@ Vec3 centre_of(const Model& model, const std::vector<int>& vertices) {
   return sum / static_cast<double>(vertices.size());
 }
 
+/// A pin warns that it moves its vertices in the first step if it moves one by more than this [m].
+constexpr double smallest_jump = 1e-6;
+
 /// The product of rate and time after which (1 + rate·time) exp(−rate·time), the share of the way that is
 /// left with critical damping, is 1 %.
 constexpr double settled = 6.638;
@@ -84,6 +87,23 @@ void soften(const Model& model, const PinSettings& settings, const Component& bo
   }
 }
 
+/// A pin that places its vertices elsewhere than they are modelled moves them there in the first step.
+void warn_of_jump(Model& model, const Pin& pin) {
+  if (pin.begins_late()) return;
+  const Eigen::Affine3d motion = pin.motion.from_model(0);
+  double farthest = 0;
+  for (const int v : pin.vertices) {
+    const Vec3& modelled = model.rest_positions[at(v)];
+    farthest = std::max(farthest, (motion * modelled - modelled).norm());
+  }
+  if (farthest > smallest_jump)
+    model.warnings.push_back(
+        fmt::format("pin {}: its first keyframe is {:.3g} m from where its vertices are modelled, and the "
+                    "first step moves "
+                    "them there; let the first keyframe be at rest, or move the body by `translate`",
+                    pin.name, farthest));
+}
+
 }  // namespace
 
 void build_pins(Model& model) {
@@ -102,6 +122,7 @@ void build_pins(Model& model) {
     pin.motion = settings.motion;
     pin.motion.pivot = settings.pivot.value_or(centre_of(model, pin.vertices));
     if (!settings.sequence.empty()) follow_sequence(model.scene, settings, body, pin);
+    if (!settings.is_soft()) warn_of_jump(model, pin);
     if (settings.is_soft()) {
       if (model.scene.solver.integrator == Integrator::symplectic_euler)
         throw Error(ErrorKind::input, settings.place,
