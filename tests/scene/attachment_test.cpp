@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "cache/scratch.hpp"
 #include "support/potential_battery.hpp"
 #include "support/sheet.hpp"
 #include <fmt/format.h>
@@ -137,6 +139,60 @@ TEST(AttachmentRun, CordOfStiffnessKGivesWayByTheWeightOverK) {
   EXPECT_NEAR(centre_of(simulation, "ball").y(), 0.3 - weight / 50, 1e-3 * weight / 50);
   EXPECT_NEAR(simulation.attachment_force("string").sum.y(), weight, 1e-3 * weight);
   EXPECT_EQ(simulation.attachment_force("string").holding, 1);
+}
+
+TEST(AttachmentRun, WeightsAreFactorsOfTheJoints) {
+  const test::Scratch scratch;
+  const std::string ramp = (scratch.path() / "ramp.csv").string();
+  std::ofstream(ramp) << [] {
+    std::string lines;
+    for (const Vec3& p : test::flat_sheet(8, 4, 0.2, 0.1).positions)
+      lines += fmt::format("{}\n", p.x() / 0.2);
+    return lines;
+  }();
+  const auto held = [](const std::string& weight) {
+    return model_of(cloth("a", "[0, 0, 0]") + post +
+                    "[[attachment]]\nname = 'hem'\nbody = 'a'\nto = 'post'\nat = [0, 0.6, 0]\nrest = "
+                    "'distance'\nstiffness = 10\ndamping = 2\nbreak_force = 4\nwhere = { box = [[-1, -1, "
+                    "-1], [1, 1, 1]] }\n" +
+                    weight);
+  };
+  const auto joints = [](const std::shared_ptr<const Model>& model) -> const Joints& {
+    return model->attachments.at(0).springs->joints();
+  };
+  const auto all = held(""), half = held("weight = 0.5\n"),
+             painted = held("weight = { map = '" + ramp + "', from = 0, to = 0.8 }\n"),
+             flat = held("weight = { map = '" + ramp + "', from = 0.5, to = 0.5 }\n");
+  ASSERT_EQ(joints(all).size(), 45u);
+  ASSERT_EQ(joints(painted).size(), 40u) << "the five vertices without weight are not attached";
+  EXPECT_EQ(joints(flat).stiffness, joints(half).stiffness) << "bit for bit";
+  EXPECT_EQ(joints(flat).damping, joints(half).damping);
+  EXPECT_EQ(joints(flat).strength, joints(half).strength);
+  double sum = 0;
+  for (std::size_t j = 0; j < 45; ++j) {
+    EXPECT_DOUBLE_EQ(joints(half).stiffness[j], joints(all).stiffness[j] / 2);
+    sum += joints(all).stiffness[j];
+  }
+  EXPECT_NEAR(sum, 10, 1e-12);
+  const Model& model = *painted;
+  double mass = 0;
+  for (std::size_t j = 0; j < 40; ++j)
+    mass += model.masses[static_cast<std::size_t>(joints(painted).of(j)[0].vertex)];
+  for (std::size_t j = 0; j < 40; ++j) {
+    const auto v = static_cast<std::size_t>(joints(painted).of(j)[0].vertex);
+    const double share = 0.8 * model.rest_positions[v].x() / 0.2 * model.masses[v] / mass;
+    EXPECT_NEAR(joints(painted).stiffness[j], 10 * share, 1e-12);
+    EXPECT_NEAR(joints(painted).strength[j], 4 * share, 1e-12);
+  }
+}
+
+TEST(AttachmentRun, BallHangsLowerOnAnAttachmentOfHalfTheWeight) {
+  const auto model =
+      model_of(ball + post + gravity +
+               "[[attachment]]\nname = 'string'\nbody = 'ball'\nwhere = { nearest = [0, 0.35, 0] }\n"
+               "to = 'post'\nrest = 'cord'\nstiffness = 100\ndamping = 8\nweight = 0.5\n");
+  const double weight = g * model->body("ball").statistics.mass;
+  EXPECT_NEAR(centre_of(after(model, 72), "ball").y(), 0.3 - weight / 50, 1e-3 * weight / 50);
 }
 
 TEST(AttachmentRun, CordIsSlackAndARodIsNot) {
@@ -307,6 +363,8 @@ TEST(AttachmentRun, WrongTablesAreErrors) {
   EXPECT_THAT(message(a + "[[pin]]\nname = 'p'\nbody = 'a'\n" + corner + to_post),
               HasSubstr("pin `p` holds"));
   EXPECT_THAT(message(a + to_post + "stiffness = 0\n"), HasSubstr("stiffness"));
+  EXPECT_THAT(message(a + to_post + "weight = 0\n"), HasSubstr("0 at every vertex"));
+  EXPECT_THAT(message(a + to_post + "weight = { map = 'ramp', from = 0, to = 1 }\n"), HasSubstr("ramp"));
   EXPECT_THAT(message(a + to_post + "from = 2\nuntil = 1\n"), HasSubstr("until"));
   EXPECT_THAT(message(a + to_post + "at = [0, 0, 0]\nwhere_to = { nearest = [0, 0, 0] }\n"),
               HasSubstr("both choose"));

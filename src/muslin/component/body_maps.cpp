@@ -168,6 +168,24 @@ std::vector<MappedNumber> over_points(const std::vector<MappedNumber>& maps, con
   return result;
 }
 
+std::vector<double> numbers_at(const schema::Variations& variations, const schema::Table& keys,
+                               std::string_view key, const SceneFiles& files, const Component& component,
+                               const std::vector<int>& selected, double otherwise) {
+  const std::vector<MappedNumber> maps = read_maps(variations, keys, files, component);
+  const MappedNumber* map = find_map(maps, key);
+  if (map == nullptr) return std::vector<double>(selected.size(), otherwise);
+  std::vector<double> numbers;
+  numbers.reserve(selected.size());
+  if (component.is_mesh() || !component.selects_vertices()) {
+    for (const int v : selected) numbers.push_back(map->at(at(v)));
+    return numbers;
+  }
+  std::vector<Vec3> points;
+  points.reserve(selected.size());
+  for (const int v : selected) points.push_back(component.selectable(at(v)));
+  return over_points({*map}, component.mesh, points).front().numbers();
+}
+
 std::uint64_t maps_hash(const std::vector<MappedNumber>& maps, std::uint64_t seed) {
   for (const MappedNumber& map : maps) {
     if (map.may_change_on_resume) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "muslin/component/component.hpp"
@@ -23,6 +24,12 @@ std::vector<MappedNumber> read_maps(const schema::Variations& variations, const 
 /// Returns the maps over points: each has the weight of the nearest point of the mesh.
 std::vector<MappedNumber> over_points(const std::vector<MappedNumber>& maps, const Mesh& mesh,
                                       const std::vector<Vec3>& points);
+
+/// Returns the number of a key at selected points of the component, of which it is `otherwise` without a map.
+/// `selected`: indices of points that `where` selects among. Errors: as read_maps.
+std::vector<double> numbers_at(const schema::Variations& variations, const schema::Table& keys,
+                               std::string_view key, const SceneFiles& files, const Component& component,
+                               const std::vector<int>& selected, double otherwise);
 
 /// Continues a hash with the numbers at every vertex of the maps that may not change when a run is resumed.
 std::uint64_t maps_hash(const std::vector<MappedNumber>& maps, std::uint64_t seed);

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "muslin/component/body_maps.hpp"
 #include "muslin/component/select.hpp"
 #include "muslin/constraint/attachment.hpp"
 #include "muslin/core/nearest_name.hpp"
@@ -77,7 +78,13 @@ schema::Table declare_attachment() {
            .range({0, 1e12, true})
            .varies(&Settings::variations, {.keyframes = true})
            .otherwise("it never breaks")
-           .means("of the whole attachment: a vertex whose force exceeds its share is free from then on")});
+           .means("of the whole attachment: a vertex whose force exceeds its share is free from then on"),
+       schema::number("weight", &Settings::weight)
+           .range(Range::between(0, 1))
+           .varies(&Settings::variations, {.map = true})
+           .means(
+               "at each selected vertex, as a factor of stiffness, damping and breaking force; where it is "
+               "0 the vertex is not attached")});
   for (schema::Key& key :
        window_keys(&Settings::from, &Settings::until, "start time", "release time, after `from`", "never"))
     table.keys.push_back(key);
@@ -133,11 +140,18 @@ class AttachmentBuilder {
     const std::vector<JointPoint> others = settings_.where_to
                                                ? points(to_, select_vertices(to_, *settings_.where_to, what_))
                                                : std::vector<JointPoint>();
+    const std::vector<double> weights =
+        numbers_at(settings_.variations, attachment_table(), "weight",
+                   {model_.scene.file, model_.scene.meshes}, body_, selected, settings_.weight);
+    const std::vector<JointPoint> firsts = points(body_, selected);
     double mass = 0;
-    for (const JointPoint& point : points(body_, selected)) {
-      add(point, partner(point, others));
-      mass += point.mass;
+    for (std::size_t i = 0; i < firsts.size(); ++i) {
+      if (weights[i] == 0) continue;
+      add(firsts[i], partner(firsts[i], others), weights[i]);
+      mass += firsts[i].mass;
     }
+    if (masses_.empty())
+      fail("its `weight` is 0 at every vertex", "raise it somewhere, or remove the attachment");
     if (!(mass > 0)) fail(fmt::format("body `{}` has no mass there", body_.name), "attach another body");
     share(mass);
     warn_of_stiffness();
@@ -222,12 +236,13 @@ class AttachmentBuilder {
     return (*surface_)(place).point;
   }
 
-  void add(const JointPoint& first, const JointPoint& second) {
+  void add(const JointPoint& first, const JointPoint& second, double weight) {
     if (second.mass == 0) require_free(first);
     joints_->add_points(first.weights, second.weights);
     if (joints_->weights.size() == joints_->offsets[joints_->offsets.size() - 2])
       fail("a vertex is attached to itself", "choose other points by `where_to`");
     masses_.push_back(first.mass);
+    weights_.push_back(weight);
     stiffness_.push_back(std::min(material(body_, first), material(to_, second)));
     places_.push_back({first.place, second.place});
   }
@@ -254,12 +269,12 @@ class AttachmentBuilder {
   }
 
   /// Sets the greatest constants of the joints, which share those of the attachment by the masses of their
-  /// points.
+  /// points, times their weights.
   void share(double mass) {
     for (std::size_t j = 0; j < masses_.size(); ++j) {
-      const double share = masses_[j] / mass;
+      const double share = weights_[j] * masses_[j] / mass;
       joints_->stiffness.push_back(settings_.stiffness ? stiffness_over_time_.greatest * share
-                                                       : stiffness_[j]);
+                                                       : weights_[j] * stiffness_[j]);
       joints_->damping.push_back(damping_.greatest * share);
       joints_->strength.push_back(strength_.greatest * share);
     }
@@ -309,7 +324,7 @@ class AttachmentBuilder {
   Scaled stiffness_over_time_, damping_, strength_;
   const Component &body_, &to_;
   std::shared_ptr<Joints> joints_ = std::make_shared<Joints>();
-  std::vector<double> masses_, stiffness_;  // by joint
+  std::vector<double> masses_, weights_, stiffness_;  // by joint
   std::vector<std::array<Vec3, 2>> places_;
   std::vector<Vec3i> triangles_;
   std::optional<ClosestPointQuery> surface_;  // of `to`

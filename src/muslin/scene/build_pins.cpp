@@ -36,22 +36,6 @@ constexpr double smallest_jump = 1e-6;
 /// left with critical damping, is 1 %.
 constexpr double settled = 6.638;
 
-/// Returns the weight of each vertex of a pin; `greatest` is that of a pin without a map.
-std::vector<double> weights_of(const Model& model, const PinSettings& settings, const Component& body,
-                               const Pin& pin, double greatest) {
-  std::vector<double> weights(pin.vertices.size(), greatest);
-  std::vector<MappedNumber> maps =
-      read_maps(settings.variations, pin_table(), {model.scene.file, model.scene.meshes}, body);
-  if (maps.empty()) return weights;
-  std::vector<Vec3> points;
-  points.reserve(pin.vertices.size());
-  for (const int v : pin.vertices) points.push_back(model.rest_positions[at(v)]);
-  if (!body.is_mesh()) maps = over_points(maps, body.mesh, points);
-  for (std::size_t k = 0; k < weights.size(); ++k)
-    weights[k] = maps.front().at(body.is_mesh() ? at(pin.vertices[k] - body.first_vertex) : k);
-  return weights;
-}
-
 /// Lets vertices without weight go.
 void drop_weightless(const PinSettings& settings, Pin& pin, std::vector<double>& weights) {
   std::size_t kept = 0;
@@ -111,10 +95,12 @@ void build_pins(Model& model) {
     const Component& body = model.body(settings.body);
     Pin pin;
     pin.name = settings.name;
-    pin.vertices = to_model(body, body.held_vertices(settings.where, "pin " + settings.name));
+    const std::vector<int> held = body.held_vertices(settings.where, "pin " + settings.name);
+    pin.vertices = to_model(body, held);
     pin.weight = *schema::over_time(settings.variations, "weight", settings.weight);
     const double greatest = pin.weight.greatest();
-    std::vector<double> weights = weights_of(model, settings, body, pin, greatest);
+    std::vector<double> weights = numbers_at(settings.variations, pin_table(), "weight",
+                                             {model.scene.file, model.scene.meshes}, body, held, greatest);
     drop_weightless(settings, pin, weights);
     for (KeyedNumber::Key& key : pin.weight.keys) key.value /= greatest;
     pin.from = settings.from;
