@@ -309,6 +309,7 @@ Attachment = TypedDict(
         "stiffness": Optional[Union[float, "ANumberThatVaries"]],  # of the whole attachment; each vertex has a share by its mass [N/m]
         "damping": Optional[Union[float, "ANumberThatVaries"]],  # of the whole attachment, against relative motion of the points [N·s/m]
         "break_force": Optional[Union[float, "ANumberThatVaries"]],  # of the whole attachment: a vertex whose force exceeds its share is free from then on [N]
+        "weight": Optional[Union[float, "ANumberThatVaries"]],  # at each selected vertex, as a factor of stiffness, damping and breaking force; where it is 0 the vertex is not attached
         "from": Optional[float],  # start time [s]
         "until": Optional[float],  # release time, after `from` [s]
     },
