@@ -8,7 +8,7 @@ import time
 import bpy
 import numpy as np
 
-from . import axes, maps, point_cache
+from . import attachments, axes, maps, point_cache
 from .advice import ERROR, INFO, WARNING, Notice, counted, suggest_width
 from .force_fields import Fields, along_z, field_objects, fields_notices, has_falloff, unit_scale
 from .playback import modifier_of
@@ -27,9 +27,10 @@ def cloth_objects(scene):
 
 
 def collider_objects(scene):
-    if not scene.muslin.use_contact:
-        return []
-    return [o for o in scene.objects if o.type == "MESH" and o.muslin.role == "COLLIDER"]
+    """All of them, or without contact those that cloth is attached to."""
+    wanted = None if scene.muslin.use_contact else attachments.targets(scene)
+    return [o for o in scene.objects
+            if o.type == "MESH" and o.muslin.role == "COLLIDER" and (wanted is None or o in wanted)]
 
 
 def own_friction(obj):
@@ -105,7 +106,7 @@ class Snapshot:
             evaluated.to_mesh_clear()
 
     def _read_topology(self, mesh, obj, groups):
-        """`groups`: names of those whose weights are wanted; `pinned` comes from the pin group of the object."""
+        """`groups`: names of those whose weights are wanted, for pins, attachments and maps of the object."""
         self.corners = np.empty(len(mesh.loops), np.int32)
         mesh.loops.foreach_get("vertex_index", self.corners)
         self.sizes = np.empty(len(mesh.polygons), np.int32)
@@ -126,6 +127,7 @@ class Snapshot:
                     self.weights[indices[entry.group]][vertex.index] = entry.weight
         pins = self.weights.get(obj.muslin.pin_group, np.zeros(0))
         self.pinned = np.flatnonzero(pins > 0 if obj.muslin.use_soft_pins else pins >= PIN_WEIGHT)
+        self.attached = attachments.vertices(obj, self.weights) if groups else {}
 
     def world(self, scale):
         return axes.to_muslin(self.points, self.matrix, scale)
@@ -133,7 +135,7 @@ class Snapshot:
     def obj(self, scale, points=None):
         flip = np.linalg.det(self.matrix[:3, :3]) < 0
         return obj_text(self.world(scale) if points is None else points, self.corners, self.sizes, self.uvs,
-                        self.pinned, flip)
+                        {"pinned": self.pinned, **self.attached}, flip)
 
 
 def uv_areas(uvs, sizes):
@@ -147,7 +149,7 @@ def uv_areas(uvs, sizes):
 
 
 def groups_of(obj):
-    """The names of the vertex groups that its pins and maps use. Raises Problem."""
+    """The names of the vertex groups that its pins, attachments and maps use. Raises Problem."""
     if obj.muslin.role != "CLOTH":
         return []
     names = []
@@ -160,6 +162,7 @@ def groups_of(obj):
     pins = obj.muslin.pin_group
     if pins and pins not in obj.vertex_groups:
         raise Problem(f"{obj.name}: there is no vertex group \"{pins}\" to pin: choose one under Pins")
+    names += [entry.group for entry in obj.muslin.attachments]
     return names + [pins] if pins else names
 
 
@@ -182,6 +185,10 @@ def require_ready(scene):
         if not obj.visible_get():
             raise Problem(f"{obj.name} is hidden, so Blender does not animate it: show it, or remove its muslin role")
     for obj in cloth_objects(scene):
+        try:
+            attachments.require_ready(obj, scene)
+        except attachments.Refused as refused:
+            raise Problem(f"{obj.name}: {refused}") from None
         groups_of(obj)
 
 
@@ -211,6 +218,7 @@ def notices_of(obj, taken):
             n = counted(partial, "vertex has a weight", "vertices have weights")
             say(WARNING, f"{n} between 0 and 1 in \"{group}\": from 0.5 on they are held, below they are free. Soft, under "
                          "Pins, holds by the weight")
+    notices += attachments.notices_of(obj, taken.weights)
     if obj.muslin.model == "SHELL" and not taken.unwrapped:
         say(INFO, "Some polygons have no area in the UV map, which gives the threads their direction: they run along the "
                   "longest side instead. UV > Unwrap lets you choose")
@@ -268,6 +276,11 @@ def scene_input(scene, names, snapshots, first, last):
                         air_density=props.air_density, contact=props.use_contact,
                         effort=props.effort.lower(), friction=props.friction,
                         distance=props.contact_distance * scale, tangled=props.tangled.lower())
+
+    def seconds(frame):
+        """Less than a step after the frame: in the frame itself things still hold."""
+        return (max(frame - first, 0) + 0.5 / (props.steps() or 1000)) / rate
+
     for obj in cloth_objects(scene):
         m, name = obj.muslin, names[obj.name]
         cloth = Cloth(name=name, model=m.model.lower(), material=m.fabric, thickness=m.thickness * scale,
@@ -295,8 +308,8 @@ def scene_input(scene, names, snapshots, first, last):
             if snapshots[obj.name].weights[m.pin_group].min() < 1:
                 cloth.pin_weight = Painted(maps.map_file(name, PINS), 0, 1)
         if m.use_release and cloth.pinned:
-            # Less than a step later: in the frame itself they still hold.
-            cloth.release = (max(m.release_frame - first, 0) + 0.5 / (props.steps() or 1000)) / rate
+            cloth.release = seconds(m.release_frame)
+        cloth.attachments = attachments.of_object(obj, names, snapshots[obj.name].weights, seconds)
         result.cloths.append(cloth)
     for obj in collider_objects(scene):
         result.colliders.append(Collider(names[obj.name], friction=own_friction(obj), layer=own_layer(obj)))
@@ -390,12 +403,13 @@ class Capture:
             (folder / cloth.rest_mesh).write_text(taken.obj(self.scale, points), encoding="utf-8")
 
     def painted(self, name):
-        """(what, vertex group) of the maps of an object, the weights of soft pins among them."""
+        """(what, vertex group) of the maps of an object, the weights of soft pins and attachments among them."""
         if name not in self.cloths:
             return []
-        m = bpy.data.objects[name].muslin
+        obj = bpy.data.objects[name]
+        m = obj.muslin
         pins = [(PINS, m.pin_group)] if m.use_soft_pins and m.pin_group else []
-        return [(x.what.lower(), x.group) for x in m.maps] + pins
+        return [(x.what.lower(), x.group) for x in m.maps] + pins + attachments.painted(obj)
 
     def follows(self, name):
         """Returns true if the object's points are needed in every frame."""

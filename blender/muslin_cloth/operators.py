@@ -244,6 +244,34 @@ class MUSLIN_OT_map_remove(RoleOperator):
         return {"FINISHED"}
 
 
+class MUSLIN_OT_attachment_add(RoleOperator):
+    bl_idname = "muslin.attachment_add"
+    bl_label = "Add Attachment"
+    bl_description = "Hold a vertex group to another muslin object"
+
+    def execute(self, context):
+        obj = context.object
+        entry = obj.muslin.attachments.add()
+        if obj.vertex_groups.active:
+            entry.group = obj.vertex_groups.active.name
+        others = [o for o in context.scene.objects if o != obj and o.type == "MESH" and o.muslin.role != "NONE"]
+        if len(others) == 1:
+            entry.target = others[0]
+        return {"FINISHED"}
+
+
+class MUSLIN_OT_attachment_remove(RoleOperator):
+    bl_idname = "muslin.attachment_remove"
+    bl_label = "Remove Attachment"
+    bl_description = "Let the vertices go"
+
+    index: IntProperty(options={"HIDDEN"})
+
+    def execute(self, context):
+        context.object.muslin.attachments.remove(self.index)
+        return {"FINISHED"}
+
+
 class MUSLIN_MT_presets(Menu):
     bl_label = "Fabric Presets"
     preset_subdir = "muslin_cloth"
@@ -283,7 +311,8 @@ class MUSLIN_OT_suggest_width(RoleOperator):
 
 CLASSES = (MUSLIN_OT_bake, MUSLIN_OT_bake_from_current, MUSLIN_OT_resume, MUSLIN_OT_cancel, MUSLIN_OT_free,
            MUSLIN_OT_check, MUSLIN_OT_select_crossing, MUSLIN_OT_report, MUSLIN_OT_cloth_add, MUSLIN_OT_collider_add, MUSLIN_OT_remove,
-           MUSLIN_OT_map_add, MUSLIN_OT_map_remove, MUSLIN_MT_presets, MUSLIN_OT_preset_add, MUSLIN_OT_suggest_width)
+           MUSLIN_OT_map_add, MUSLIN_OT_map_remove, MUSLIN_OT_attachment_add, MUSLIN_OT_attachment_remove,
+           MUSLIN_MT_presets, MUSLIN_OT_preset_add, MUSLIN_OT_suggest_width)
 
 
 def register():

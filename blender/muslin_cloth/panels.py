@@ -170,16 +170,21 @@ class PHYSICS_PT_muslin_cloth(ClothPanel, Panel):
             layout.prop(m, "use_stretch_limit")
             if m.use_stretch_limit:
                 layout.prop(m, "stretch_limit")
-            row = layout.row(heading="Pressure")
-            row.prop(m, "use_pressure", text="")
-            sub = row.row()
-            sub.enabled = m.use_pressure
-            sub.prop(m, "pressure", text="")
+            draw_optional(layout, m, "Pressure", "use_pressure", "pressure")
         column = layout.column()
         column.enabled = context.scene.muslin.use_contact
         column.prop(m, "use_self_contact")
         draw_surface(column, m)
         draw_counts(layout, context, m)
+
+
+def draw_optional(column, owner, heading, use, value):
+    """A number with the switch before it."""
+    row = column.row(heading=heading)
+    row.prop(owner, use, text="")
+    sub = row.row()
+    sub.enabled = getattr(owner, use)
+    sub.prop(owner, value, text="")
 
 
 def draw_surface(column, m):
@@ -231,22 +236,37 @@ class PHYSICS_PT_muslin_pins(ClothPanel, Panel):
         column = layout.column()
         column.enabled = bool(m.pin_group)
         column.prop(m, "pin_animated")
-        row = column.row(heading="Soft")
-        row.prop(m, "use_soft_pins", text="")
-        sub = row.row()
-        sub.enabled = m.use_soft_pins
-        sub.prop(m, "pin_stiffness", text="")
-        row = column.row(heading="Release")
-        row.prop(m, "use_release", text="")
-        sub = row.row()
-        sub.enabled = m.use_release
-        sub.prop(m, "release_frame", text="")
+        draw_optional(column, m, "Soft", "use_soft_pins", "pin_stiffness")
+        draw_optional(column, m, "Release", "use_release", "release_frame")
         cache = modifier_of(obj)
         if cache and m.pin_group and m.pin_animated:
             above = [x.name for x in obj.modifiers[: obj.modifiers.find(cache.name)]]
             text = f"Follows {', '.join(above)}" if above else "Follows the object and its shape keys"
             paragraph(layout, text + "; what stands below the Muslin modifier refines the cloth", context.region.width,
                       "INFO")
+
+
+class PHYSICS_PT_muslin_attachments(ClothPanel, Panel):
+    bl_label = "Attachments"
+    bl_parent_id = "PHYSICS_PT_muslin"
+
+    def draw(self, context):
+        layout, obj = self.layout, context.object
+        for index, entry in enumerate(obj.muslin.attachments):
+            column = layout.box().column()
+            row = column.row(align=True)
+            row.prop(entry, "target", text="")
+            row.prop_search(entry, "group", obj, "vertex_groups", text="")
+            row.operator("muslin.attachment_remove", text="", icon="X").index = index
+            column.row().prop(entry, "rest", expand=True)
+            column.use_property_split = True
+            draw_optional(column, entry, "Soft", "use_stiffness", "stiffness")
+            if entry.use_stiffness:
+                column.prop(entry, "damping")
+            draw_optional(column, entry, "Breaks", "use_break_force", "break_force")
+            draw_optional(column, entry, "Start", "use_start", "start_frame")
+            draw_optional(column, entry, "End", "use_end", "end_frame")
+        layout.operator("muslin.attachment_add", icon="ADD")
 
 
 class PHYSICS_PT_muslin_scene(ClothPanel, Panel):
@@ -297,7 +317,8 @@ def draw_add(self, context):
         column.operator("muslin.remove", text=label, icon="X")
 
 
-CLASSES = (PHYSICS_PT_muslin, PHYSICS_PT_muslin_cloth, PHYSICS_PT_muslin_maps, PHYSICS_PT_muslin_pins, PHYSICS_PT_muslin_scene)
+CLASSES = (PHYSICS_PT_muslin, PHYSICS_PT_muslin_cloth, PHYSICS_PT_muslin_maps, PHYSICS_PT_muslin_pins,
+           PHYSICS_PT_muslin_attachments, PHYSICS_PT_muslin_scene)
 
 
 def register():

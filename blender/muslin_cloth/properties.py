@@ -35,6 +35,39 @@ class MuslinMap(bpy.types.PropertyGroup):
     high: FloatProperty(name="To", default=1, min=0, soft_max=10, precision=2, description="Where the weight is 1")
 
 
+def can_hold(entry, obj):
+    return obj.type == "MESH" and obj.muslin.role != "NONE" and obj != entry.id_data
+
+
+class MuslinAttachment(bpy.types.PropertyGroup):
+    target: PointerProperty(name="Object", type=bpy.types.Object, poll=can_hold,
+                            description="Muslin cloth, a muslin solid or a muslin collider")
+    group: StringProperty(name="Vertex Group", description="Vertices with a weight above 0 are attached, each to the nearest "
+                                                           "point of the object; stiffness and breaking force follow the "
+                                                           "weight")
+    rest: EnumProperty(
+        name="Kind", description="What the attachment does with the distance of its points",
+        items=[("JOINED", "Joined", keys.meaning("attachment", "rest", "joined")),
+               ("DISTANCE", "Rod", keys.meaning("attachment", "rest", "distance")),
+               ("CORD", "Cord", keys.meaning("attachment", "rest", "cord"))])
+    use_stiffness: BoolProperty(name="Soft", description="Springs of a stiffness of their own, in place of joints as stiff as "
+                                                         "the material around them")
+    stiffness: FloatProperty(
+        name="Stiffness", default=100, min=1e-3, soft_max=1e4,
+        description="Of the springs of all vertices together [N/m]: a load of 1 N stretches them by its inverse, in metres")
+    damping: FloatProperty(
+        name="Damping", soft_max=100, **keys.limits("attachment", "damping"), default=keys.default("attachment", "damping"),
+        description="Of all vertices together, against relative motion [N·s/m]")
+    use_break_force: BoolProperty(name="Breaks", description="Vertices come off at a force")
+    break_force: FloatProperty(
+        name="Breaking Force", default=50, min=1e-6, soft_max=1e4,
+        description="Of all vertices together [N]: a vertex whose force exceeds its share is free from then on")
+    use_start: BoolProperty(name="Start", description="The attachment begins after a frame")
+    start_frame: IntProperty(name="Start Frame", default=1)
+    use_end: BoolProperty(name="End", description="The attachment lets go after a frame")
+    end_frame: IntProperty(name="End Frame", default=50)
+
+
 class MuslinObject(bpy.types.PropertyGroup):
     role: EnumProperty(
         name="Role", items=[("NONE", "None", ""), ("CLOTH", "Cloth", "Simulated by muslin"),
@@ -51,6 +84,7 @@ class MuslinObject(bpy.types.PropertyGroup):
     bending_factor: factor("Bending", "Stiffness of bending of cloth")
     damping_factor: factor("Damping", "Damping of stretch and bending")
     maps: CollectionProperty(type=MuslinMap)
+    attachments: CollectionProperty(type=MuslinAttachment)
     thickness: FloatProperty(
         name="Thickness", subtype="DISTANCE", min=0, soft_max=1, precision=4, update=drop_estimate,
         description=f"Of cloth: {keys.sentence('body', 'thickness', model='shell')}. Of a solid: "
@@ -157,7 +191,7 @@ class MuslinScene(bpy.types.PropertyGroup):
         return self.frame_start, self.frame_end
 
 
-CLASSES = (MuslinMap, MuslinObject, MuslinScene)
+CLASSES = (MuslinMap, MuslinAttachment, MuslinObject, MuslinScene)
 
 
 def let_overrides_keep(cls):

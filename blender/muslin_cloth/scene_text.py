@@ -20,6 +20,21 @@ class Painted:
 
 
 @dataclass
+class Attachment:
+    """Vertices of a body held to another one."""
+    name: str
+    group: str  # of the mesh's file: the vertices
+    to: str  # the name of the other body or collider
+    rest: str = keys.default("attachment", "rest")
+    weight: Optional[Painted] = None  # None: all vertices have weight 1
+    stiffness: Optional[float] = None  # of all vertices together [N/m]; None: stiff
+    damping: float = keys.default("attachment", "damping")  # [N·s/m]
+    break_force: Optional[float] = None  # of all together [N]; None: it never breaks
+    begin: float = 0.0  # [s]
+    end: Optional[float] = None  # [s]; None: never
+
+
+@dataclass
 class Cloth:
     name: str  # of the body: names files
     model: str  # "shell" | "lattice"
@@ -40,6 +55,7 @@ class Cloth:
     stretch_limit: Optional[float] = None  # of a shell: length over length at rest; None: no limit
     layer: Optional[int] = None  # order outward, of cloth and colliders
     pressures: List[float] = field(default_factory=list)  # inside a shell: one, or one a frame [Pa]; empty: none
+    attachments: List[Attachment] = field(default_factory=list)
 
 
 @dataclass
@@ -159,15 +175,20 @@ def scene_toml(scene: SceneInput, moving: bool = True) -> str:
     for cloth in scene.cloths:
         if cloth.pinned:
             lines += ["", "[[pin]]"] + _pin(cloth, moving)
-    for collider in scene.colliders if scene.contact else ():
+    for collider in scene.colliders:
         lines += ["", "[[collider]]", f"name = {quoted(collider.name)}", 'shape = "mesh"',
                   f"mesh = {quoted(collider.name + '.obj')}"]
         if collider.sequence and moving:
             lines.append(f"sequence = {quoted(collider.sequence)}")
-        if collider.friction is not None:
+        if not scene.contact:
+            lines.append("contact = false")
+        elif collider.friction is not None:
             lines.append(f"friction = {number(collider.friction)}")
         if collider.layer is not None:
             lines.append(f"layer = {collider.layer}")
+    for cloth in scene.cloths:
+        for attachment in cloth.attachments:
+            lines += ["", "[[attachment]]", f"body = {quoted(cloth.name)}"] + _attachment(attachment)
     if scene.contact:
         lines += ["", "[contact]", f"friction = {number(scene.friction)}", f"tangled = {quoted(scene.tangled)}"]
         if scene.distance > 0:
@@ -221,6 +242,24 @@ def _pin(cloth, moving):
     return lines
 
 
+def _attachment(attachment):
+    lines = [f"name = {quoted(attachment.name)}", f"where = {{ group = {quoted(attachment.group)} }}",
+             f"to = {quoted(attachment.to)}", f"rest = {quoted(attachment.rest)}"]
+    if attachment.weight is not None:
+        lines.append(f"weight = {varied(attachment.weight)}")
+    if attachment.stiffness is not None:
+        lines.append(f"stiffness = {number(attachment.stiffness)}")
+    if attachment.damping:
+        lines.append(f"damping = {number(attachment.damping)}")
+    if attachment.break_force is not None:
+        lines.append(f"break_force = {number(attachment.break_force)}")
+    if attachment.begin > 0:
+        lines.append(f"from = {number(attachment.begin)}")
+    if attachment.end is not None:
+        lines.append(f"until = {number(attachment.end)}")
+    return lines
+
+
 def _wind(scene):
     wind = scene.wind or Wind([(0.0, 0.0, 0.0)])
     lines = [f"air_density = {number(scene.air_density)}",
@@ -242,9 +281,9 @@ def _field(each, frame_rate):
     return lines
 
 
-def obj_text(points, corners, sizes, uvs=None, pinned=None, flip=False):
+def obj_text(points, corners, sizes, uvs=None, groups=None, flip=False):
     """points (n, 3); corners: vertex of every polygon corner, polygon after polygon; sizes: corners of each
-    polygon; uvs (#corners, 2) or None; pinned: indices for the group `pinned`; flip turns polygons around."""
+    polygon; uvs (#corners, 2) or None; groups: {name: indices of its vertices}; flip turns polygons around."""
     out = ["v %.9g %.9g %.9g" % tuple(p) for p in np.asarray(points)]
     if uvs is not None:
         out += ["vt %.9g %.9g" % tuple(uv) for uv in uvs]
@@ -256,6 +295,7 @@ def obj_text(points, corners, sizes, uvs=None, pinned=None, flip=False):
             out.append("f " + " ".join(str(corners[c]) for c in order))
         else:
             out.append("f " + " ".join(f"{corners[c]}/{c + 1}" for c in order))
-    if pinned is not None and len(pinned):
-        out += ["g pinned", "p " + " ".join(str(v + 1) for v in pinned)]
+    for name, vertices in (groups or {}).items():
+        if len(vertices):
+            out += [f"g {name}", "p " + " ".join(str(v + 1) for v in vertices)]
     return "\n".join(out) + "\n"

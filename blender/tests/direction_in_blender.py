@@ -1,5 +1,5 @@
-"""Direction in a real Blender, without a window: sliders, painted maps, soft pins by weight, pressure and gravity over time,
-layers, library overrides, and what a bake says at its end."""
+"""Direction in a real Blender, without a window: sliders, painted maps, soft pins by weight, attachments, pressure and gravity
+over time, layers, library overrides, and what a bake says at its end."""
 
 import json
 import pathlib
@@ -110,6 +110,105 @@ class Pins(DirectionTest):
         cloth(obj)
         bpy.ops.muslin.bake()
         self.assertTrue(any("3 vertices have weights between 0 and 1" in n.text for n in session().notices))
+
+
+class Attachments(DirectionTest):
+    """A sheet whose upper edge is attached to a bar."""
+
+    def hung(self, group="top", weight=lambda x, y, z: z > 1.45, **settings):
+        bpy.context.scene.frame_end = 12
+        bar = host.mesh_object("Bar", [(-0.6, -0.02, 1.5), (0.6, -0.02, 1.5), (0.6, 0.02, 1.5), (-0.6, 0.02, 1.5)],
+                               [(0, 1, 2, 3)])
+        bpy.ops.muslin.collider_add()
+        obj = cloth(grid(pins=None))
+        paint(obj, group, weight)
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.muslin.attachment_add()
+        entry = obj.muslin.attachments[0]
+        self.assertEqual((entry.target, entry.group), (bar, group), "the only other muslin object is suggested")
+        for name, value in settings.items():
+            setattr(entry, name, value)
+        return obj, bar, entry
+
+    def edge(self, obj, frame):
+        upper = points(obj, 1)[:, 2] > 1.45
+        return points(obj, frame)[upper]
+
+    def test_cloth_hangs_from_a_collider_and_follows_it(self):
+        obj, bar, _ = self.hung()
+        for frame, x in ((1, 0.0), (12, 0.1)):
+            bar.location.x = x
+            bar.keyframe_insert("location", frame=frame)
+        bpy.context.scene.frame_set(1)
+        bpy.ops.muslin.bake()
+        self.assertLess(points(obj, 12)[:, 2].min(), points(obj, 1)[:, 2].min() + 0.01)
+        np.testing.assert_allclose(self.edge(obj, 12), self.edge(obj, 1) + [0.1, 0, 0], atol=0.01)
+        told = self.written()
+        self.assertEqual(told["attachment"], [{"body": "Cloth", "name": "attachment 1 of Cloth", "to": "Bar",
+                                               "where": {"group": "attached1"}, "rest": "joined"}])
+        self.assertFalse(told["collider"][0]["contact"], "contact is off in this scene")
+
+    def test_a_weight_is_a_map_and_stiffness_a_spring(self):
+        obj, _, _ = self.hung(weight=lambda x, y, z: (0.5 - x) * (z > 1.45), use_stiffness=True, stiffness=100, damping=1)
+        bpy.ops.muslin.bake()
+        told = self.written()["attachment"][0]
+        self.assertEqual(told["weight"], {"map": "Cloth.attached1.csv", "from": 0, "to": 1})
+        self.assertEqual((told["stiffness"], told["damping"]), (100, 1))
+        drop = (self.edge(obj, 1) - self.edge(obj, 12))[:, 2]
+        self.assertLess(drop[0], 0.25 * drop[-1], "it holds by the weight")
+        bpy.ops.muslin.free()
+        self.assertFalse((self.folder / "muslin_work").exists(), "the files of weights go too")
+
+    def test_it_begins_and_ends_in_frames_of_the_scene_and_breaks(self):
+        obj, _, entry = self.hung(use_end=True, end_frame=6)
+        bpy.ops.muslin.bake()
+        np.testing.assert_allclose(self.edge(obj, 6), self.edge(obj, 1), atol=0.01)
+        self.assertLess(self.edge(obj, 12)[:, 2].max(), 1.5 - 0.05, "it falls")
+        entry.use_start, entry.start_frame = True, 6
+        with self.assertRaisesRegex(RuntimeError, "ends in frame 6, before it begins"):
+            bpy.ops.muslin.bake()
+        entry.use_start = entry.use_end = False
+        entry.use_break_force, entry.break_force = True, 0.01
+        bpy.ops.muslin.bake()
+        self.assertEqual(self.run_json()["attachments"][0]["holding"], 0)
+        self.assertLess(self.edge(obj, 12)[:, 2].max(), 1.5 - 0.3)
+
+    def test_it_may_change_from_the_current_frame(self):
+        obj, _, entry = self.hung()
+        bpy.ops.muslin.bake()
+        bpy.context.scene.frame_set(6)
+        entry.use_end, entry.end_frame = True, 7
+        bpy.ops.muslin.bake_from_current()
+        np.testing.assert_allclose(self.edge(obj, 6), self.edge(obj, 1), atol=0.01)
+        self.assertLess(self.edge(obj, 12)[:, 2].max(), 1.5 - 0.05, "it falls")
+
+    def test_two_cloths_are_sewn_together(self):
+        first = grid("First")
+        cloth(first)
+        second = cloth(grid("Second", pins=None))
+        second.location.z = -1.0
+        paint(second, "seam", lambda x, y, z: z > 1.45)
+        entry = second.muslin.attachments.add()
+        entry.target, entry.group = first, "seam"
+        bpy.ops.muslin.bake()
+        seam = points(second, 6)[points(second, 1)[:, 2] > 0.45]
+        hem = points(first, 6)[points(first, 1)[:, 2] < 0.55]
+        self.assertLess(np.abs(seam - hem).max(), 0.01)
+
+    def test_bad_attachments_are_refused_by_name(self):
+        obj, bar, entry = self.hung()
+        entry.group = "nobody"
+        self.refuse("Cloth: There is no vertex group \"nobody\" to attach")
+        entry.group = ""
+        self.refuse("Cloth: An attachment has no vertex group")
+        entry.group = paint(obj, "bare", lambda x, y, z: 0)
+        self.refuse("No vertex of \"bare\" has a weight above 0")
+        bar.muslin.role = "NONE"
+        self.refuse("Cloth: It is attached to \"Bar\", which is neither muslin cloth nor a collider")
+        entry.target = None
+        self.refuse("Cloth: An attachment has no object")
+        bpy.ops.muslin.attachment_remove(index=0)
+        self.assertEqual(len(obj.muslin.attachments), 0)
 
 
 class OverTime(DirectionTest):

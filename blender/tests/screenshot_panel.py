@@ -104,6 +104,13 @@ def painted():
     entry = obj.muslin.maps.add()
     entry.what, entry.group, entry.high = "BENDING", "pins", 20
     obj.muslin.weight_factor = 1.5
+    pole = host.mesh_object("Pole", [(-0.55, 0, 0), (-0.5, 0, 0), (-0.5, 0, 1), (-0.55, 0, 1)], [(0, 1, 2, 3)])
+    bpy.ops.muslin.collider_add()
+    pole.hide_set(True)
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.muslin.attachment_add()
+    assert obj.muslin.attachments[0].target == pole
+    obj.muslin.attachments[0].use_break_force = True
 
 
 @step
@@ -116,7 +123,10 @@ def settings():
 def lower_settings():
     picture("2_settings_lower")
     scroll(bpy.ops.view2d.scroll_up)
-    bpy.context.view_layer.objects.active.muslin.maps.clear()
+    obj = bpy.context.view_layer.objects.active
+    bpy.data.objects.remove(obj.muslin.attachments[0].target)
+    obj.muslin.attachments.clear()
+    obj.muslin.maps.clear()
     bpy.context.view_layer.objects.active.muslin.weight_factor = 1
     assert bpy.ops.muslin.check("INVOKE_DEFAULT") == {"FINISHED"}
 

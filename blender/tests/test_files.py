@@ -48,7 +48,7 @@ class Keys(unittest.TestCase):
 
         kinds = ("Bool", "Collection", "Enum", "Float", "Int", "Pointer", "String")
         bpy = types.ModuleType("bpy")
-        bpy.types = types.SimpleNamespace(PropertyGroup=object)
+        bpy.types = types.SimpleNamespace(PropertyGroup=object, Object=object)
         bpy.props = types.ModuleType("bpy.props")
         for kind in kinds:
             setattr(bpy.props, f"{kind}Property", prop)
@@ -151,8 +151,8 @@ class SceneText(Scratch):
                                      release=0.25, pin_stiffness=40, self_contact=False)])
 
     def check(self, scene, moving=False):
-        self.square("a b", uvs=[(0, 0), (1, 0), (1, 1), (0, 1)], pinned=[0, 1])
-        self.square("solid", height=3, pinned=[2])
+        self.square("a b", uvs=[(0, 0), (1, 0), (1, 1), (0, 1)], groups={"pinned": [0, 1]})
+        self.square("solid", height=3, groups={"pinned": [2]})
         (self.folder / "scene.toml").write_text(scene_text.scene_toml(scene, moving))
         return worker.ask(PROGRAM, "check", "--json", str(self.folder / "scene.toml"))
 
@@ -193,6 +193,21 @@ class SceneText(Scratch):
         scene.air_density = 0  # a vacuum has no air to move
         told = tomllib.loads(scene_text.scene_toml(scene))["force"][1:]
         self.assertEqual([f["type"] for f in told], ["radial", "drag"])
+
+    def test_the_program_reads_attachments(self):
+        scene = self.scene()
+        scene.cloths[0].pinned = False
+        scene.cloths[0].attachments = [scene_text.Attachment(
+            "attachment 1 of a b", "pinned", "solid", "cord", scene_text.Painted(maps.map_file("a b", "attached1"), 0, 1),
+            40, 2, 15, 0.25, 0.5), scene_text.Attachment("attachment 2 of a b", "pinned", "floor")]
+        scene.colliders = [scene_text.Collider("floor")]
+        self.square("floor", height=-1)
+        (self.folder / maps.map_file("a b", "attached1")).write_text(maps.weights_text([0.5, 0, 1, 1]))
+        for contact in (True, False):
+            scene.contact = contact
+            code, out, err = self.check(scene)
+            self.assertEqual((code, err), (0, ""))
+            self.assertEqual([a["joints"] for a in json.loads(out)["attachments"]], [1, 2], "one vertex has no weight")
 
     def test_the_program_reads_maps_sliders_and_keys(self):
         fabrics.program = PROGRAM
@@ -251,7 +266,8 @@ class SceneText(Scratch):
         self.assertEqual([c.get("friction") for c in told["collider"]], [None, 0.18])
         scene.contact = False
         told = tomllib.loads(scene_text.scene_toml(scene))
-        self.assertFalse({"collider", "contact"} & set(told))
+        self.assertNotIn("contact", told)
+        self.assertEqual([c["contact"] for c in told["collider"]], [False] * len(scene.colliders))
         self.assertEqual([b["contact"] for b in told["body"]], [False, False])
         scene.wind, scene.air_density, scene.gravity = None, 0, [(0, 0, 0)] * 2
         self.assertNotIn("force", tomllib.loads(scene_text.scene_toml(scene)))
