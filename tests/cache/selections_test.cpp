@@ -74,14 +74,17 @@ TEST(Selections, MayBeMissingButNotDamaged) {
   begin_run(scratch / "run", test::small_model());
   const auto path = scratch / "run/selections.json";
   const std::string good = test::bytes_of(path);
-  const std::string bad[] = {"",
-                             "[]",
-                             "{\"pins\":3}",
-                             good.substr(0, good.size() / 2),
-                             R"({"pins":[{"name":"a","body":"flag","from":0,"until":1,"vertices":[1000]}],)"
-                             R"("point_forces":[]})",
-                             R"({"pins":[{"name":"a","body":"none","from":0,"until":1,"vertices":[0]}],)"
-                             R"("point_forces":[]})"};
+  const std::string bad[] = {
+      "",
+      "[]",
+      "{\"pins\":3}",
+      good.substr(0, good.size() / 2),
+      R"({"pins":[{"name":"a","body":"flag","from":0,"until":1,"vertices":[1000]}],)"
+      R"("point_forces":[]})",
+      R"({"pins":[{"name":"a","body":"none","from":0,"until":1,"vertices":[0]}],)"
+      R"("point_forces":[]})",
+      R"({"pins":[],"point_forces":[],"cords":[{"name":"a","slackens":true,"from":0,)"
+      R"("until":1,"ends":[{"body":"flag","points":[0,1,9999],"weights":[1,0,0]}]}]})"};
   for (const std::string& content : bad) {
     test::write_bytes(path, content);
     try {

@@ -154,9 +154,12 @@ RunReader::RunReader(fs::path directory) : impl_(std::make_unique<Impl>()) {
     }
     impl.bodies.push_back(std::move(tracks));
   }
-  std::vector<std::size_t> points;
-  for (const BodyTracks& body : impl.bodies) points.push_back(body.selectable().cache.points());
-  impl.selections = read_selections(impl.directory / "selections.json", impl.names, points);
+  std::vector<std::size_t> points, skins;
+  for (const BodyTracks& body : impl.bodies) {
+    points.push_back(body.selectable().cache.points());
+    skins.push_back(body.skin.cache.points());
+  }
+  impl.selections = read_selections(impl.directory / "selections.json", impl.names, points, skins);
   impl.diagnostics.resize(frames);
   impl.frames = static_cast<int>(frames);
 }
@@ -177,6 +180,14 @@ int RunReader::last_frame() const {
 const std::vector<std::string>& RunReader::bodies() const { return impl_->names; }
 const std::vector<Diagnostics>& RunReader::diagnostics() const { return impl_->diagnostics; }
 const Selections& RunReader::selections() const { return impl_->selections; }
+
+std::vector<int> RunReader::holding(const std::string& attachment) const {
+  const std::filesystem::path path = impl_->directory / "attachments.csv";
+  std::vector<int> holding;
+  if (std::filesystem::exists(path)) holding = read_holding(path, attachment);
+  holding.resize(static_cast<std::size_t>(impl_->frames), -1);
+  return holding;
+}
 
 Vec3 RunReader::colour(int body) const {
   const auto b = static_cast<std::size_t>(body);

@@ -79,8 +79,11 @@ class MUSLIN_API RunReader {
   bool has_cells(int body) const;
   const Cells& cells(int body) const;  ///< empty if it has none
 
-  /// Returns the vertices of the pins and point forces since the run was last started or resumed.
+  /// Returns the vertices of the pins and point forces, and the cords, since the run was last started or
+  /// resumed.
   const Selections& selections() const;
+  /// Returns for each frame how many joints of an attachment hold; −1 where the run does not tell.
+  std::vector<int> holding(const std::string& attachment) const;
 
   /// Rows of diagnostics.csv, frames 0 … frame_count() − 1.
   const std::vector<Diagnostics>& diagnostics() const;

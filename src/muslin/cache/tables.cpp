@@ -149,6 +149,24 @@ std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path) {
   return rows;
 }
 
+std::vector<int> read_holding(const std::filesystem::path& path, const std::string& attachment) {
+  const std::string text = read_file(path), name = quoted(attachment) + ",";
+  std::vector<int> holding;
+  for (std::size_t at = text.find('\n') + 1; at != 0 && at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string::npos) break;
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    const std::size_t after_time = line.find(',', line.find(',') + 1) + 1;
+    if (line.substr(after_time).starts_with(name)) {
+      const auto frame = static_cast<std::size_t>(std::max(std::atoi(line.data()), 0));
+      if (holding.size() <= frame) holding.resize(frame + 1, -1);
+      holding[frame] = std::atoi(line.data() + line.rfind(',') + 1);
+    }
+    at = end + 1;
+  }
+  return holding;
+}
+
 std::string stretch_row(const LimitedStretch& row) {
   return fmt::format("{},{},{},{}\n", row.frame, row.stretch, row.limit, quoted(row.body));
 }

@@ -33,6 +33,10 @@ std::vector<Diagnostics> read_diagnostics(const std::filesystem::path& path);
 /// Returns the rows of a table of stretches; an unfinished last line is left out. Errors: file, input.
 std::vector<LimitedStretch> read_stretches(const std::filesystem::path& path);
 
+/// Returns for each frame of a table of attachments how many joints of one hold; −1 without a row. Errors:
+/// file.
+std::vector<int> read_holding(const std::filesystem::path& path, const std::string& attachment);
+
 /// Returns the length of the part of a table up to and including the rows of `last_frame` (the first column).
 /// 0 if the text is not a table.
 std::size_t table_length(std::string_view table, int last_frame);

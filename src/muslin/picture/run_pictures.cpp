@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "muslin/geometry/thicken.hpp"
+#include "muslin/picture/cords.hpp"
 #include "muslin/render/plot.hpp"
 #include "muslin/render/scene_view.hpp"
 #include "muslin/scene/colours.hpp"
@@ -39,6 +41,7 @@ struct RunPictures::Parts {
   PictureOptions options;
   std::vector<int> bodies;
   std::vector<EdgeStretch> stretch;
+  std::optional<Cords> cords;
   std::unique_ptr<Raytracer> tracer;
 
   Look look(int body, const Mesh& mesh) const {
@@ -112,6 +115,10 @@ RunPictures::RunPictures(RunReader run, const PictureOptions& options, const Pro
     scale.label = "stretch [%]";
     scene.colour_scale = scale;
   }
+  if (options.body.empty() && !p.run.selections().cords.empty() && frame_count() > 0) {
+    p.cords.emplace(p.run, 0.0018 * bounds.diagonal().norm());
+    scene.surfaces.push_back(p.cords->surface());
+  }
   p.tracer = std::make_unique<Raytracer>(std::move(scene), fit.camera(), options.render);
 }
 
@@ -132,6 +139,8 @@ Image RunPictures::draw(int frame, const std::vector<Marker>& markers) {
     values.push_back(coloured ? p.stretch[b].at(positions.back()) : std::vector<double>());
   }
   for (std::size_t b = 0; b < p.bodies.size(); ++b) view.surfaces.push_back({positions[b], values[b]});
+  const std::vector<Vec3> cords = p.cords ? p.cords->points(frame) : std::vector<Vec3>();
+  if (p.cords) view.surfaces.push_back({cords, {}});
   view.markers = markers;
   view.label = fmt::format("{}   {:.2f} s", p.run.title(), frame / p.run.frame_rate());
   return p.tracer->render(view);
