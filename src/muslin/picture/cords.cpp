@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 
 namespace muslin {
 namespace {
@@ -44,24 +46,38 @@ Line curve(const Vec3& a, const Vec3& b, double length) {
   return parabola(a, b, low * down);
 }
 
+/// Finds ends of cords at a frame; reads each body once.
+class Ends {
+ public:
+  Ends(const RunReader& run, int frame) : run_(run), frame_(frame), skins_(run.bodies().size()) {}
+
+  Vec3 operator()(const Cord::End& end) {
+    std::vector<Vec3f>& skin = skins_[static_cast<std::size_t>(end.body)];
+    if (skin.empty()) skin = run_.points(end.body, SurfaceKind::skin, frame_);
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 0; c < 3; ++c)
+      sum += end.weights[static_cast<int>(c)] * skin[static_cast<std::size_t>(end.points[c])].cast<double>();
+    return sum;
+  }
+
+ private:
+  const RunReader& run_;
+  int frame_;
+  std::vector<std::vector<Vec3f>> skins_;  // empty until wanted
+};
+
 }  // namespace
 
 Cords::Cords(const RunReader& run, double radius) : run_(run), radius_(radius) {
+  std::map<int, Ends> ends;                      // by the frame in which cords begin
+  std::map<std::string, std::vector<int>> held;  // by attachment
   for (const Cord& cord : run.selections().cords) {
-    Drawn drawn{cord, 0, run.holding(cord.name)};
     const int begin = static_cast<int>(std::ceil(cord.from * run.frame_rate()));
     if (begin >= run.frame_count()) continue;
-    drawn.length = (end(cord.ends[0], begin) - end(cord.ends[1], begin)).norm();
-    cords_.push_back(std::move(drawn));
+    Ends& at = ends.try_emplace(begin, run, begin).first->second;
+    if (held.count(cord.name) == 0) held[cord.name] = run.holding(cord.name);
+    cords_.push_back({cord, (at(cord.ends[0]) - at(cord.ends[1])).norm(), held[cord.name]});
   }
-}
-
-Vec3 Cords::end(const Cord::End& end, int frame) const {
-  const std::vector<Vec3f> points = run_.points(end.body, SurfaceKind::skin, frame);
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t c = 0; c < 3; ++c)
-    sum += end.weights[static_cast<int>(c)] * points[static_cast<std::size_t>(end.points[c])].cast<double>();
-  return sum;
 }
 
 bool Cords::acts(const Drawn& drawn, int frame) const {
@@ -93,8 +109,9 @@ Surface Cords::surface() const {
 std::vector<Vec3> Cords::points(int frame) const {
   std::vector<Vec3> all;
   all.reserve(cords_.size() * rings * sides);
+  Ends at(run_, frame);
   for (const Drawn& drawn : cords_) {
-    const Vec3 a = end(drawn.cord.ends[0], frame), b = end(drawn.cord.ends[1], frame);
+    const Vec3 a = at(drawn.cord.ends[0]), b = at(drawn.cord.ends[1]);
     const double radius = acts(drawn, frame) ? radius_ : 0;
     const auto line = curve(a, radius > 0 ? b : a, drawn.cord.slackens ? drawn.length : 0);
     for (std::size_t r = 0; r < rings; ++r) {

@@ -26,7 +26,6 @@ class Cords {
     double length = 0;         ///< [m]
     std::vector<int> holding;  ///< by frame
   };
-  Vec3 end(const Cord::End& end, int frame) const;
   bool acts(const Drawn& drawn, int frame) const;
 
   const RunReader& run_;
