@@ -220,6 +220,15 @@ class MUSLIN_OT_remove(RoleOperator):
         return {"FINISHED"}
 
 
+class RemoveEntry(RoleOperator):
+    """Removes one of a list of the object."""
+    index: IntProperty(options={"HIDDEN"})
+
+    def execute(self, context):
+        getattr(context.object.muslin, self.entries).remove(self.index)
+        return {"FINISHED"}
+
+
 class MUSLIN_OT_map_add(RoleOperator):
     bl_idname = "muslin.map_add"
     bl_label = "Add Map"
@@ -232,16 +241,12 @@ class MUSLIN_OT_map_add(RoleOperator):
         return {"FINISHED"}
 
 
-class MUSLIN_OT_map_remove(RoleOperator):
+class MUSLIN_OT_map_remove(RemoveEntry):
     bl_idname = "muslin.map_remove"
     bl_label = "Remove Map"
     bl_description = "Let the number be the same everywhere"
 
-    index: IntProperty(options={"HIDDEN"})
-
-    def execute(self, context):
-        context.object.muslin.maps.remove(self.index)
-        return {"FINISHED"}
+    entries = "maps"
 
 
 class MUSLIN_OT_attachment_add(RoleOperator):
@@ -260,16 +265,12 @@ class MUSLIN_OT_attachment_add(RoleOperator):
         return {"FINISHED"}
 
 
-class MUSLIN_OT_attachment_remove(RoleOperator):
+class MUSLIN_OT_attachment_remove(RemoveEntry):
     bl_idname = "muslin.attachment_remove"
     bl_label = "Remove Attachment"
     bl_description = "Let the vertices go"
 
-    index: IntProperty(options={"HIDDEN"})
-
-    def execute(self, context):
-        context.object.muslin.attachments.remove(self.index)
-        return {"FINISHED"}
+    entries = "attachments"
 
 
 class MUSLIN_MT_presets(Menu):
