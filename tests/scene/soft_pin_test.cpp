@@ -1,5 +1,5 @@
 // Soft pins in runs: forces in closed form, arrival in time, hand-over, the energy account, resume and
-// threads; the report of what pins hold; errors.
+// threads; the report of what pins hold; the first keyframe of any pin; errors.
 #include <algorithm>
 #include <cmath>
 #include <fstream>

@@ -49,11 +49,7 @@ Eigen::Affine3d Motion::from_model(double time) const {
 }
 
 Eigen::Affine3d Motion::between(double begin, double time) const {
-  if (keys.empty()) return Eigen::Affine3d::Identity();
-  const Eigen::Isometry3d there = at(time), back = at(begin).inverse();
-  const Vec3 growth = scale_at(time).cwiseQuotient(scale_at(begin));
-  if (growth == Vec3::Ones()) return Eigen::Affine3d(there * back);
-  return there * (Eigen::Translation3d(pivot) * Eigen::Scaling(growth) * Eigen::Translation3d(-pivot)) * back;
+  return from_model(time) * from_model(begin).inverse();
 }
 
 }  // namespace muslin

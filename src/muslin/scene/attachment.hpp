@@ -33,8 +33,7 @@ struct MUSLIN_API AttachmentSettings {
   double damping = 0;                 ///< of all dashpots together [N·s/m]
   std::optional<double> break_force;  ///< of all joints together [N]; none: it never breaks
   double weight = 1;                  ///< of every joint, a factor of its numbers, 0 to 1
-  schema::Variations
-      variations;  ///< of stiffness, damping, force of breaking, by keyframes; weight, by a map
+  schema::Variations variations;      ///< by keyframes, of `weight` by a map
   enum class Rest { joined, distance, cord } rest = Rest::joined;
   double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
   Place place;

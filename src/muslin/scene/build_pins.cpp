@@ -83,8 +83,8 @@ void warn_of_jump(Model& model, const Pin& pin) {
   if (farthest > smallest_jump)
     model.warnings.push_back(
         fmt::format("pin {}: its first keyframe is {:.3g} m from where its vertices are modelled, and the "
-                    "first step moves "
-                    "them there; let the first keyframe be at rest, or move the body by `translate`",
+                    "first step moves them there; let the first keyframe be at rest, or move the body by "
+                    "`translate`",
                     pin.name, farthest));
 }
 
@@ -108,7 +108,6 @@ void build_pins(Model& model) {
     pin.motion = settings.motion;
     pin.motion.pivot = settings.pivot.value_or(centre_of(model, pin.vertices));
     if (!settings.sequence.empty()) follow_sequence(model.scene, settings, body, pin);
-    if (!settings.is_soft()) warn_of_jump(model, pin);
     if (settings.is_soft()) {
       if (model.scene.solver.integrator == Integrator::symplectic_euler)
         throw Error(ErrorKind::input, settings.place,
@@ -116,6 +115,8 @@ void build_pins(Model& model) {
                     "choose an implicit integrator");
       soften(model, settings, body, weights, pin);
       model.loads.push_back({pin.name, EnergyRole::support, std::make_shared<SoftPin>(pin)});
+    } else {
+      warn_of_jump(model, pin);
     }
     model.pins.push_back(std::move(pin));
   }
