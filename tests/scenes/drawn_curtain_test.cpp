@@ -12,9 +12,9 @@ TEST(DrawnCurtain, HangsFromItsRingsWhereTheyWereDrawn) {
   SceneRun run("drawn_curtain.toml", {"solver.effort=draft"});
   run.until_frame(66);
   const Vec3 ring = run.probe("last ring");
-  EXPECT_NEAR(ring.x(), 0.4 * 0.7, 0.005);
-  EXPECT_LT(ring.y(), 2.1);
-  EXPECT_GT(ring.y(), 2.09);
+  EXPECT_NEAR(ring.x(), 0.4 * 1.4, 0.005);
+  EXPECT_LT(ring.y(), 1.3);
+  EXPECT_GT(ring.y(), 1.29);
   double carried = 0;
   for (int k = 1; k <= 9; ++k) carried += run.simulation().pin_force("ring " + std::to_string(k)).sum.y();
   const double weight = 9.81 * run.body().statistics.mass;
