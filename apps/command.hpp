@@ -15,6 +15,7 @@ void add_field(CLI::App& program);
 void add_render(CLI::App& program);
 void add_export(CLI::App& program);
 void add_view(CLI::App& program);
+void add_blender_addon(CLI::App& program);
 void add_report(CLI::App& program);
 void add_fit(CLI::App& program);
 void add_materials(CLI::App& program);

@@ -77,6 +77,7 @@ int run(int argc, char** argv) {
   add_report(program);
   add_fit(program);
   add_export(program);
+  add_blender_addon(program);
   add_sweep(program);
   add_materials(program);
   add_schema(program);
