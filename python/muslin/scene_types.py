@@ -2,13 +2,19 @@
 
 # ruff: noqa: E501, UP007, UP013, UP045
 import os
+import sys
 from collections.abc import Sequence
-from typing import Any, Literal, Optional, Required, TypedDict, Union
+from typing import Any, Literal, Optional, TypedDict, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from muslin._muslin import Mesh
+
+if sys.version_info >= (3, 11):
+    from typing import Required
+else:  # which type checkers alone know
+    Required = Optional
 
 Vector = Union[Sequence[float], npt.NDArray[np.floating[Any]]]
 Points = Union[Sequence[Vector], npt.NDArray[np.floating[Any]]]
