@@ -2,7 +2,7 @@
 BUILD := build/release
 JOBS ?= $(shell nproc)
 
-.PHONY: build demo test test-hosts blender-addon setup setup-tests python-env clean pictures gallery reference site release build-time asan tsan fuzz tidy format
+.PHONY: build demo test test-hosts blender-addon setup setup-tests python-env clean pictures gallery reference site wheel test-wheel release build-time asan tsan fuzz tidy format
 .DEFAULT_GOAL := build
 
 setup:            ## installs the Debian packages muslin builds on, if any is missing
@@ -57,6 +57,12 @@ build-time:       ## the processor time from a bare checkout to the program
 
 blender-addon:    ## out/muslin-blender-VERSION.zip, for Blender 3.4 and later
 	blender/package
+
+wheel:            ## the Python module as wheels that hold everything, in out/wheels
+	tools/wheel
+
+test-wheel:       ## those wheels in bare systems, old and new; as root
+	tools/test_wheel out/wheels/*.whl
 
 release: build    ## the files of a release, in out/release
 	tools/release $(BUILD)/muslin
