@@ -31,7 +31,7 @@ if(NOT muslin_without_compiler)
     find_package(GTest QUIET)
   endif()
   if(MUSLIN_BUILD_PYTHON)
-    find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module OPTIONAL_COMPONENTS Development.SABIModule)
+    find_package(Python 3.10 QUIET COMPONENTS Interpreter Development.Module OPTIONAL_COMPONENTS Development.SABIModule)
   endif()
   set(muslin_compiler_found ON)
 endif()
@@ -68,7 +68,7 @@ if(MUSLIN_BUILD_TESTS)
   muslin_need(GTest_FOUND "GoogleTest, for the tests" "libgtest-dev;libgmock-dev" "gtest-devel;gmock-devel" gtest)
 endif()
 if(MUSLIN_BUILD_PYTHON)
-  muslin_need(Python_Development.Module_FOUND "the headers of Python 3.9 or later (or -D Python_EXECUTABLE=PROGRAM that has them)"
+  muslin_need(Python_Development.Module_FOUND "the headers of Python 3.10 or later (or -D Python_EXECUTABLE=PROGRAM that has them)"
               python3-dev python3-devel python)
 endif()
 
