@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "muslin/core/progress.hpp"
 #include "muslin/fit/measurements.hpp"
@@ -12,14 +13,22 @@
 namespace muslin {
 
 struct DrapeOptions {
-  int rings = 9;  ///< of cells from the support to the edge of the cloth
-  int drops = 2;  ///< simulated drapes whose mean is taken, each from another small unevenness
-  int most = 12;  ///< of the materials that a fit tries
+  int rings = 9;               ///< of cells from the support to the edge of the cloth
+  int drops = 1;               ///< simulated drapes, each from another small unevenness
+  int most = 12;               ///< of the materials that a fit tries
   std::string mesh = "right";  ///< triangulation of the ring, a kind of geometry/triangulated_strip
 };
 
-/// Returns the coefficient of a material with [shell], the mean of the drops. Limits of stretch do not act.
-/// Errors: solver.
+struct Drape {
+  double coefficient = 0;
+  int folds = 0;  ///< maxima of the outline's distance from the middle that rise by a tenth of the overhang
+};
+
+/// Drapes a material with [shell], once for each drop. Limits of stretch do not act. Errors: solver.
+std::vector<Drape> simulate_drapes(const Material& material, const DrapeTest& test,
+                                   const DrapeOptions& options, const Progress& progress = {});
+
+/// Returns the mean coefficient of the drops.
 double drape_coefficient(const Material& material, const DrapeTest& test, const DrapeOptions& options,
                          const Progress& progress = {});
 
