@@ -135,14 +135,14 @@ TEST_F(ShellModel, LongEdgesAreAWarningIfTheMembraneLocks) {
   EXPECT_THAT(build(of("denim") + "compression = 'elastic'\n").warnings, testing::IsEmpty());
   const Model silk = build(of("silk") + "compression = 'elastic'\n");
   ASSERT_THAT(silk.warnings,
-              testing::ElementsAre(HasSubstr("silk drapes too stiffly with more than 0.0056 m")));
+              testing::ElementsAre(HasSubstr("silk drapes too stiffly with more than 0.0038 m")));
   const auto json = nlohmann::json::parse(describe_json(silk));
-  EXPECT_NEAR(json["bodies"][0]["trusted_edge"].get<double>(), 0.00556, 1e-5);
+  EXPECT_NEAR(json["bodies"][0]["trusted_edge"].get<double>(), 0.00377, 1e-5);
   EXPECT_EQ(json["warnings"].size(), 1u);
   // The advice of the warning removes it.
   const Model buckling = build(of("silk"));
   EXPECT_THAT(buckling.warnings, testing::IsEmpty());
-  EXPECT_THAT(describe_text(buckling), HasSubstr("as the fabric's with edges of up to 0.008 m"));
+  EXPECT_THAT(describe_text(buckling), HasSubstr("as the fabric's with edges of up to 0.0047 m"));
 }
 
 TEST_F(ShellModel, WarpRotatesWithTheBody) {

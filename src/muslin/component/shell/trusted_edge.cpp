@@ -11,7 +11,7 @@ namespace {
 constexpr double gravity = 9.81;  // [m/s²]
 /// Edges of a fold of radius L, and the energy of the membrane over that of bending, at which drape
 /// coefficients are off by 5 points.
-constexpr double edges_of_fold = 2, energy_ratio = 16;
+constexpr double edges_of_fold = 2.5, energy_ratio = 16;
 
 double mean(double along_warp, double along_weft) { return std::sqrt(along_warp * along_weft); }
 
