@@ -55,7 +55,7 @@ void add_fit(CLI::App& program) {
   command
       ->add_option("--rings", a->drape.rings, "cells of the cloth from its support to its edge (default: 9)")
       ->check(CLI::Range(3, 40));
-  command->add_option("--drops", a->drape.drops, "simulated drapes that are averaged (default: 1)")
+  command->add_option("--drops", a->drape.drops, "simulated drapes that are averaged (default: 2)")
       ->check(CLI::Range(1, 20));
   command->add_flag("--quiet", a->quiet, "no progress, no table");
   command->callback([a] { fit(*a); });

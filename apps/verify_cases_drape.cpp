@@ -23,6 +23,7 @@ std::vector<Comparison> drapes_alike(const std::string& material, std::initializ
   for (const FabricMesh& of : fabric_meshes(cells)) {
     DrapeOptions options;
     options.rings = of.cells;
+    options.drops = 1;
     options.mesh = of.kind;
     const double coefficient = 100 * drape_coefficient(find_material(material), {}, options);
     numbers.push_back({of.label(material + " [%]"), 0, coefficient, points, false});

@@ -55,7 +55,7 @@ void bind_fit(nb::module_& m) {
         options.drops = drops;
         return fit_fabric(read_measurements(measurements), options, progress_of(progress, cancel));
       },
-      "measurements"_a, nb::kw_only(), "rings"_a = 9, "drops"_a = 1, "progress"_a = nb::none(),
+      "measurements"_a, nb::kw_only(), "rings"_a = 9, "drops"_a = 2, "progress"_a = nb::none(),
       "cancel"_a = nb::none(),
       "Fits a material to a file of measurements, as `muslin fit` does. rings: cells of a simulated drape\n"
       "from its support to its edge; drops: simulated drapes that are averaged.");

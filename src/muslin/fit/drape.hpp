@@ -14,7 +14,7 @@ namespace muslin {
 
 struct DrapeOptions {
   int rings = 9;               ///< of cells from the support to the edge of the cloth
-  int drops = 1;               ///< simulated drapes, each from another small unevenness
+  int drops = 2;               ///< simulated drapes, each from another small unevenness
   int most = 12;               ///< of the materials that a fit tries
   std::string mesh = "right";  ///< triangulation of the ring, a kind of geometry/triangulated_strip
 };
